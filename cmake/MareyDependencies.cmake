@@ -1,0 +1,38 @@
+# Every third-party package, with the Debian package that provides it in the message.
+function(marey_require package debian)
+  find_package(${package} ${ARGN} QUIET)
+  if(NOT ${package}_FOUND)
+    message(FATAL_ERROR "${package} was not found. On Debian 12: apt-get install ${debian} "
+                        "(or run packaging/run, which installs every package).")
+  endif()
+endfunction()
+
+macro(marey_require_here package debian)
+  # A macro: imported targets and variables of the package must reach the caller.
+  find_package(${package} ${ARGN} QUIET)
+  if(NOT ${package}_FOUND)
+    message(FATAL_ERROR "${package} was not found. On Debian 12: apt-get install ${debian} "
+                        "(or run packaging/run, which installs every package).")
+  endif()
+endmacro()
+
+find_package(Threads REQUIRED)
+marey_require_here(Eigen3 libeigen3-dev)
+marey_require_here(nlohmann_json nlohmann-json3-dev)
+marey_require_here(CLI11 libcli11-dev)
+marey_require_here(Torch libtorch-dev)
+if(NOT MAREY_TRAIN_ONLY)
+  find_package(fmt QUIET)
+  marey_require_here(libzip libzip-dev)
+  marey_require_here(ZLIB zlib1g-dev)
+  marey_require_here(Boost libboost-dev)
+  find_package(PkgConfig REQUIRED)
+endif()
+
+# fmt: the shared library where it is installed, else its headers alone.
+add_library(marey_fmt INTERFACE)
+if(fmt_FOUND)
+  target_link_libraries(marey_fmt INTERFACE fmt::fmt)
+else()
+  target_compile_definitions(marey_fmt INTERFACE FMT_HEADER_ONLY)
+endif()

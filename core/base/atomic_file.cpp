@@ -1,0 +1,112 @@
+#include "base/atomic_file.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+
+namespace marey {
+namespace fs = std::filesystem;
+namespace {
+
+/// A name beside `path` that no other process or thread uses.
+fs::path besideName(const fs::path& path) {
+  static std::atomic<unsigned> counter{0};
+  fs::path out = path;
+  out += fmt::format(".partial-{}-{}", ::getpid(), counter++);
+  return out;
+}
+
+void createFolder(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code ec;
+  fs::create_directories(folder, ec);
+  if (ec) throw FileError(fmt::format("{}: cannot create folder: {}", folder.string(), ec.message()));
+}
+
+void renameOver(const fs::path& from, const fs::path& to) {
+  std::error_code ec;
+  fs::rename(from, to, ec);
+  if (ec) throw FileError(fmt::format("{}: cannot write: {}", to.string(), ec.message()));
+}
+
+}  // namespace
+
+void writeFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  createFolder(path.parent_path());
+  const fs::path partial = besideName(path);
+  try {
+    errno = 0;
+    std::ofstream out(partial, std::ios::binary | std::ios::trunc);
+    if (!out) throw FileError(fmt::format("{}: cannot write: {}", path.string(), std::strerror(errno)));
+    write(out);
+    out.flush();
+    const bool written = static_cast<bool>(out);
+    out.close();
+    if (!written || !out)
+      throw FileError(fmt::format("{}: cannot write: {}", path.string(),
+                                  errno != 0 ? std::strerror(errno) : "stream failed"));
+    renameOver(partial, path);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+    throw;
+  }
+}
+
+void writeFileAtomically(const fs::path& path, std::string_view content) {
+  writeFileAtomically(path, [content](std::ostream& out) {
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  });
+}
+
+std::string readFile(const fs::path& path, size_t maxBytes) {
+  std::error_code ec;
+  if (fs::is_directory(path, ec))
+    throw FileError(fmt::format("{}: expected a file, found a folder", path.string()));
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) throw FileError(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
+  const auto size = static_cast<size_t>(in.tellg());
+  if (size > maxBytes)
+    throw FileError(fmt::format("{}: expected at most {} bytes, found {}", path.string(), maxBytes, size));
+  std::string content(size, '\0');
+  in.seekg(0);
+  in.read(content.data(), static_cast<std::streamsize>(size));
+  if (!in && size > 0) throw FileError(fmt::format("{}: cannot read to its end", path.string()));
+  return content;
+}
+
+StagedFolder::StagedFolder(fs::path target) : m_target(std::move(target)) {
+  if (m_target.filename().empty()) m_target = m_target.parent_path();
+  createFolder(m_target.parent_path());
+  m_staging = besideName(m_target);
+  createFolder(m_staging);
+}
+
+StagedFolder::~StagedFolder() {
+  std::error_code ignored;
+  fs::remove_all(m_staging, ignored);
+}
+
+void StagedFolder::commit() {
+  if (!fs::exists(m_target)) {
+    renameOver(m_staging, m_target);
+    return;
+  }
+  createFolder(m_target);
+  for (const auto& entry : fs::recursive_directory_iterator(m_staging)) {
+    const fs::path to = m_target / fs::relative(entry.path(), m_staging);
+    if (entry.is_directory())
+      createFolder(to);
+    else
+      renameOver(entry.path(), to);
+  }
+}
+
+}  // namespace marey

@@ -1,0 +1,212 @@
+#include "base/tensor_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include "base/atomic_file.h"
+
+namespace marey {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "tensor files are little-endian");
+
+struct TypeInfo {
+  DType type;
+  const char* name;
+  size_t bytes;
+};
+constexpr std::array<TypeInfo, 6> kTypes{{{DType::F32, "F32", 4},
+                                          {DType::F64, "F64", 8},
+                                          {DType::F16, "F16", 2},
+                                          {DType::I64, "I64", 8},
+                                          {DType::I32, "I32", 4},
+                                          {DType::U8, "U8", 1}}};
+
+const TypeInfo& info(DType type) {
+  return *std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return t.type == type; });
+}
+
+float halfToFloat(uint16_t h) {
+  const uint32_t sign = (h & 0x8000u) << 16;
+  const uint32_t exponent = (h >> 10) & 0x1Fu;
+  const uint32_t mantissa = h & 0x3FFu;
+  if (exponent == 0) return std::copysign(std::ldexp(static_cast<float>(mantissa), -24), sign ? -1.f : 1.f);
+  const uint32_t bits = exponent == 31 ? sign | 0x7F800000u | (mantissa << 13)
+                                       : sign | ((exponent + 112) << 23) | (mantissa << 13);
+  return std::bit_cast<float>(bits);
+}
+
+/// Round to nearest even; overflow becomes infinity.
+uint16_t floatToHalf(float value) {
+  const uint32_t bits = std::bit_cast<uint32_t>(value);
+  const auto sign = static_cast<uint16_t>((bits >> 16) & 0x8000u);
+  if (std::isnan(value)) return sign | 0x7E00u;
+  const float magnitude = std::fabs(value);
+  if (magnitude >= 65520.f) return sign | 0x7C00u;
+  if (magnitude < 0x1p-14f)
+    return sign | static_cast<uint16_t>(std::nearbyint(std::ldexp(magnitude, 24)));
+  const uint32_t rebased = (bits & 0x7FFFFFFFu) - (112u << 23);
+  const uint32_t rounded = rebased + 0xFFFu + ((rebased >> 13) & 1u);
+  return sign | static_cast<uint16_t>(rounded >> 13);
+}
+
+template <typename From, typename To>
+std::vector<To> convert(const Tensor& t) {
+  std::vector<To> out(static_cast<size_t>(t.count()));
+  for (size_t i = 0; i < out.size(); ++i) {
+    From value;
+    std::memcpy(&value, t.bytes.data() + i * sizeof(From), sizeof(From));
+    out[i] = static_cast<To>(value);
+  }
+  return out;
+}
+
+template <typename To>
+std::vector<To> convertAny(const Tensor& t) {
+  switch (t.dtype) {
+    case DType::F32: return convert<float, To>(t);
+    case DType::F64: return convert<double, To>(t);
+    case DType::I64: return convert<int64_t, To>(t);
+    case DType::I32: return convert<int32_t, To>(t);
+    case DType::U8: return convert<uint8_t, To>(t);
+    case DType::F16: break;
+  }
+  const auto halves = convert<uint16_t, uint16_t>(t);
+  std::vector<To> out(halves.size());
+  std::transform(halves.begin(), halves.end(), out.begin(),
+                 [](uint16_t h) { return static_cast<To>(halfToFloat(h)); });
+  return out;
+}
+
+template <typename T>
+Tensor fromValues(DType dtype, std::vector<int64_t> shape, const T* values) {
+  Tensor out{.dtype = dtype, .shape = std::move(shape), .bytes = {}};
+  out.bytes.resize(static_cast<size_t>(out.count()) * sizeof(T));
+  if (!out.bytes.empty()) std::memcpy(out.bytes.data(), values, out.bytes.size());
+  return out;
+}
+
+std::string textOf(const std::vector<int64_t>& shape) {
+  std::string out = "(";
+  for (size_t i = 0; i < shape.size(); ++i)
+    out += (i ? ", " : "") + (shape[i] < 0 ? std::string("any") : std::to_string(shape[i]));
+  return out + ")";
+}
+
+Tensor parseTensor(const std::string& key, const Json& entry, std::string_view data,
+                   const std::string& origin) {
+  const Place place{.path = origin, .item = "tensor '" + key + "'"};
+  JsonReader reader(entry, origin, key + ".");
+  const auto typeName = reader.required<std::string>("dtype");
+  const auto type = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return typeName == t.name; });
+  if (type == kTypes.end()) throw InputError(place, "a type of F32, F64, F16, I64, I32, U8", typeName);
+  Tensor out{.dtype = type->type, .shape = reader.required<std::vector<int64_t>>("shape"), .bytes = {}};
+  const auto range = reader.required<std::vector<uint64_t>>("data_offsets");
+  uint64_t count = 1;
+  for (const int64_t size : out.shape) {
+    if (size < 0 || (size > 0 && count > (uint64_t{1} << 40) / static_cast<uint64_t>(size)))
+      throw InputError(place, "a sensible shape", out.shapeText());
+    count *= static_cast<uint64_t>(size);
+  }
+  if (range.size() != 2 || range[0] > range[1] || range[1] > data.size())
+    throw InputError(place, fmt::format("data within {} bytes", data.size()), "offsets beyond the file (is it cut?)");
+  if (range[1] - range[0] != count * type->bytes)
+    throwInput(place, fmt::format("{} bytes", count * type->bytes), "{} bytes", range[1] - range[0]);
+  out.bytes.resize(range[1] - range[0]);
+  if (!out.bytes.empty()) std::memcpy(out.bytes.data(), data.data() + range[0], out.bytes.size());
+  return out;
+}
+
+}  // namespace
+
+size_t byteSize(DType type) { return info(type).bytes; }
+const char* name(DType type) { return info(type).name; }
+
+int64_t Tensor::count() const {
+  return std::accumulate(shape.begin(), shape.end(), int64_t{1}, std::multiplies<>());
+}
+std::string Tensor::shapeText() const { return textOf(shape); }
+Tensor Tensor::fromFloats(std::vector<int64_t> shape, const float* v) { return fromValues(DType::F32, std::move(shape), v); }
+Tensor Tensor::fromDoubles(std::vector<int64_t> shape, const double* v) { return fromValues(DType::F64, std::move(shape), v); }
+Tensor Tensor::fromInt64(std::vector<int64_t> shape, const int64_t* v) { return fromValues(DType::I64, std::move(shape), v); }
+std::vector<float> Tensor::toFloats() const { return convertAny<float>(*this); }
+std::vector<double> Tensor::toDoubles() const { return convertAny<double>(*this); }
+std::vector<int64_t> Tensor::toInt64() const { return convertAny<int64_t>(*this); }
+
+Tensor Tensor::as(DType type) const {
+  if (type == dtype) return *this;
+  const auto values = toFloats();
+  if (type == DType::F32) return fromFloats(shape, values.data());
+  if (type == DType::F64) return fromDoubles(shape, toDoubles().data());
+  if (type != DType::F16) throw Error("Tensor::as converts to floating-point types only");
+  std::vector<uint16_t> halves(values.size());
+  std::transform(values.begin(), values.end(), halves.begin(), floatToHalf);
+  return fromValues(DType::F16, shape, halves.data());
+}
+
+const Tensor& TensorFile::get(const std::string& key, const std::vector<int64_t>& shape,
+                              const std::string& path) const {
+  const Place place{.path = path, .item = "tensor '" + key + "'"};
+  const auto found = tensors.find(key);
+  if (found == tensors.end()) throw InputError(place, "shape " + textOf(shape), "no such tensor");
+  const auto& actual = found->second.shape;
+  const bool same = std::equal(shape.begin(), shape.end(), actual.begin(), actual.end(),
+                               [](int64_t want, int64_t have) { return want < 0 || want == have; });
+  if (!same) throw InputError(place, "shape " + textOf(shape), found->second.shapeText());
+  return found->second;
+}
+
+TensorFile parseTensorFile(std::string_view bytes, const std::string& origin) {
+  uint64_t headerSize = 0;
+  if (bytes.size() < 8) throw InputError({.path = origin}, "a tensor file", "fewer than 8 bytes");
+  std::memcpy(&headerSize, bytes.data(), 8);
+  if (headerSize > bytes.size() - 8)
+    throwInput({.path = origin}, fmt::format("a header within {} bytes", bytes.size()),
+               "a header of {} bytes (not a Marey file, or cut)", headerSize);
+  const Json header = parseJson(bytes.substr(8, headerSize), origin);
+  if (!header.is_object()) throw InputError({.path = origin}, "a JSON object as header", header.type_name());
+  TensorFile out;
+  for (const auto& [key, entry] : header.items()) {
+    if (key != "__metadata__") {
+      out.tensors.emplace(key, parseTensor(key, entry, bytes.substr(8 + headerSize), origin));
+    } else if (entry.is_object() && entry.contains("marey") && entry["marey"].is_string()) {
+      out.metadata = parseJson(entry["marey"].get<std::string>(), origin + ", metadata");
+    }
+  }
+  return out;
+}
+
+TensorFile readTensorFile(const std::filesystem::path& path) {
+  return parseTensorFile(readFile(path), path.string());
+}
+
+std::string serialise(const TensorFile& file) {
+  Json header = Json::object();
+  header["__metadata__"] = {{"format", "marey"}, {"marey", file.metadata.dump()}};
+  uint64_t offset = 0;
+  for (const auto& [key, tensor] : file.tensors) {
+    header[key] = {{"dtype", name(tensor.dtype)},
+                   {"shape", tensor.shape},
+                   {"data_offsets", {offset, offset + tensor.bytes.size()}}};
+    offset += tensor.bytes.size();
+  }
+  std::string text = header.dump();
+  text.resize((text.size() + 7) / 8 * 8, ' ');
+  const uint64_t size = text.size();
+  std::string out(reinterpret_cast<const char*>(&size), 8);
+  out.reserve(8 + text.size() + offset);
+  out += text;
+  for (const auto& [key, tensor] : file.tensors)
+    out.append(reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size());
+  return out;
+}
+
+void writeTensorFile(const std::filesystem::path& path, const TensorFile& file) {
+  writeFileAtomically(path, serialise(file));
+}
+
+}  // namespace marey

@@ -1,0 +1,69 @@
+// The pose and control features of the MoGlow papers (Habibie et al. 2017): joint positions
+// in a floor-level frame that follows the character, and that frame's motion as control.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "motion/clip.h"
+#include "motion/roles.h"
+
+namespace marey {
+
+/// Row-major: one row per frame.
+using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// How clips become features. Stored in every data set and model.
+struct FeatureSpec {
+  std::string layout = "positions";  ///< root-frame joint positions, joints x 3
+  double fps = 20.0;
+  double rootSigmaS = 0.1;    ///< Gaussian filter of the root's floor position, seconds
+  double facingSigmaS = 0.25;  ///< Gaussian filter of the facing direction, seconds
+
+  bool operator==(const FeatureSpec&) const = default;
+};
+
+/// The root frame on the floor: position, and heading about +Y (0 faces +Z, left is +X;
+/// forward = (sin h, 0, cos h)).
+struct RootFrame {
+  double x = 0.0, z = 0.0, heading = 0.0;
+};
+
+/// One clip as a model sees it.
+/// pose [T, joints*3]: joint positions in the root frame, metres, y = true height.
+/// control [T, 3]: the root's sideways (+left) and forward displacement in metres and its turn
+/// in radians since the previous frame, in the previous root frame. Row 0 repeats row 1 (zero
+/// for a clip of one frame): it has no previous frame.
+struct FeatureSequence {
+  std::string name;
+  Matrix pose;
+  Matrix control;
+  RootFrame start;  ///< root frame of row 0
+
+  int frameCount() const { return static_cast<int>(pose.rows()); }
+};
+
+/// Root frames of a clip at its own rate: hip position on the floor and facing (from the mean of
+/// the left-right hip and shoulder vectors), both Gaussian-filtered in time.
+/// Throws InputError when the skeleton has no left and right hip joint.
+std::vector<RootFrame> rootTrajectory(const Clip& clip, const FeatureSpec& spec);
+
+/// Control rows [T, 3] between successive root frames, and back by integration in double.
+Matrix controlFromTrajectory(const std::vector<RootFrame>& trajectory);
+std::vector<RootFrame> trajectoryFromControl(const Matrix& control, const RootFrame& start);
+
+/// Resamples to spec.fps and extracts pose and control. Throws InputError on invalid clips.
+FeatureSequence extractFeatures(const Clip& clip, const FeatureSpec& spec);
+
+/// World motion from features: the root follows the integrated control exactly.
+Clip rebuildMotion(const Matrix& pose, const Matrix& control, const RootFrame& start,
+                   std::shared_ptr<const Skeleton> skeleton, double fps);
+
+/// Left and right swapped: joints by `mirror`, x, sideways and turn negated.
+FeatureSequence mirrored(const FeatureSequence& sequence, const std::vector<int>& mirror);
+/// Backwards in time, controls negated.
+FeatureSequence timeReversed(const FeatureSequence& sequence);
+
+}  // namespace marey

@@ -23,10 +23,16 @@ marey_require_here(CLI11 libcli11-dev)
 marey_require_here(Torch libtorch-dev)
 if(NOT MAREY_TRAIN_ONLY)
   find_package(fmt QUIET)
-  marey_require_here(libzip libzip-dev)
   marey_require_here(ZLIB zlib1g-dev)
   marey_require_here(Boost libboost-dev)
   find_package(PkgConfig REQUIRED)
+  # Debian's libzip CMake files demand the programs zipcmp, zipmerge and ziptool; its
+  # pkg-config file demands the library alone.
+  pkg_check_modules(libzip QUIET IMPORTED_TARGET libzip)
+  if(NOT libzip_FOUND)
+    message(FATAL_ERROR "libzip was not found. On Debian 12: apt-get install libzip-dev "
+                        "(or run packaging/run, which installs every package).")
+  endif()
 endif()
 
 # fmt: the shared library where it is installed, else its headers alone.

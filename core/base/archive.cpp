@@ -1,9 +1,9 @@
 #include "base/archive.h"
 
-#include <zip.h>
-
 #include <memory>
 #include <string_view>
+
+#include <zip.h>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -23,14 +23,16 @@ struct ZipErrorText {
   std::string text() { return zip_error_strerror(&error); }
 };
 
-std::string readEntry(zip_t* archive, zip_uint64_t index, const zip_stat_t& stat, const Place& place) {
+std::string readEntry(zip_t* archive, zip_uint64_t index, const zip_stat_t& stat,
+                      const Place& place) {
   ZipFile file(zip_fopen_index(archive, index, 0), zip_fclose);
   if (!file) throw InputError(place, "a readable entry", zip_strerror(archive));
   std::string content(stat.size, '\0');
   size_t done = 0;
   while (done < content.size()) {
     const auto got = zip_fread(file.get(), content.data() + done, content.size() - done);
-    if (got <= 0) throwInput(place, fmt::format("{} bytes", stat.size), "{} (damaged archive)", done);
+    if (got <= 0)
+      throwInput(place, fmt::format("{} bytes", stat.size), "{} (damaged archive)", done);
     done += static_cast<size_t>(got);
   }
   return content;
@@ -68,8 +70,8 @@ std::map<std::string, std::string> readArchive(const std::filesystem::path& path
   return parseArchive(readFile(path), path.string(), maxBytes);
 }
 
-void writeArchive(const std::filesystem::path& path, const std::map<std::string, std::string>& files,
-                  bool compress) {
+void writeArchive(const std::filesystem::path& path,
+                  const std::map<std::string, std::string>& files, bool compress) {
   ZipErrorText error;
   zip_source_t* sink = zip_source_buffer_create(nullptr, 0, 0, &error.error);
   if (sink == nullptr) throw FileError(fmt::format("{}: {}", path.string(), error.text()));
@@ -80,7 +82,8 @@ void writeArchive(const std::filesystem::path& path, const std::map<std::string,
   for (const auto& [name, content] : files) {
     zip_source_t* source = zip_source_buffer(archive.get(), content.data(), content.size(), 0);
     const zip_int64_t index = zip_file_add(archive.get(), name.c_str(), source, ZIP_FL_ENC_UTF_8);
-    if (index < 0) throw FileError(fmt::format("{}: {}", path.string(), zip_strerror(archive.get())));
+    if (index < 0)
+      throw FileError(fmt::format("{}: {}", path.string(), zip_strerror(archive.get())));
     zip_set_file_compression(archive.get(), static_cast<zip_uint64_t>(index),
                              compress ? ZIP_CM_DEFLATE : ZIP_CM_STORE, 0);
     // A fixed date: the same content gives the same file.

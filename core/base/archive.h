@@ -16,7 +16,7 @@ std::map<std::string, std::string> readArchive(const std::filesystem::path& path
 std::map<std::string, std::string> parseArchive(std::string_view bytes, const std::string& origin,
                                                 size_t maxBytes = size_t{4} << 30);
 /// Deflated when `compress`; written atomically. Throws FileError.
-void writeArchive(const std::filesystem::path& path, const std::map<std::string, std::string>& files,
-                  bool compress = true);
+void writeArchive(const std::filesystem::path& path,
+                  const std::map<std::string, std::string>& files, bool compress = true);
 
 }  // namespace marey

@@ -1,13 +1,13 @@
 #include "base/atomic_file.h"
 
-#include <unistd.h>
-
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 #include <utility>
+
+#include <unistd.h>
 
 #include "base/error.h"
 
@@ -27,7 +27,8 @@ void createFolder(const fs::path& folder) {
   if (folder.empty()) return;
   std::error_code ec;
   fs::create_directories(folder, ec);
-  if (ec) throw FileError(fmt::format("{}: cannot create folder: {}", folder.string(), ec.message()));
+  if (ec)
+    throw FileError(fmt::format("{}: cannot create folder: {}", folder.string(), ec.message()));
 }
 
 void renameOver(const fs::path& from, const fs::path& to) {
@@ -44,7 +45,8 @@ void writeFileAtomically(const fs::path& path, const std::function<void(std::ost
   try {
     errno = 0;
     std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-    if (!out) throw FileError(fmt::format("{}: cannot write: {}", path.string(), std::strerror(errno)));
+    if (!out)
+      throw FileError(fmt::format("{}: cannot write: {}", path.string(), std::strerror(errno)));
     write(out);
     out.flush();
     const bool written = static_cast<bool>(out);
@@ -74,7 +76,8 @@ std::string readFile(const fs::path& path, size_t maxBytes) {
   if (!in) throw FileError(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
   const auto size = static_cast<size_t>(in.tellg());
   if (size > maxBytes)
-    throw FileError(fmt::format("{}: expected at most {} bytes, found {}", path.string(), maxBytes, size));
+    throw FileError(
+        fmt::format("{}: expected at most {} bytes, found {}", path.string(), maxBytes, size));
   std::string content(size, '\0');
   in.seekg(0);
   in.read(content.data(), static_cast<std::streamsize>(size));

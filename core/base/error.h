@@ -2,13 +2,13 @@
 // (2 for UsageError). Every message names the place, what was expected and what was found.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace marey {
 

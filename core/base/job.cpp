@@ -29,8 +29,8 @@ Progress Progress::part(double from, double to) {
 }
 
 Job::Job(Work work)
-    : m_thread([this, work = std::move(work)](std::stop_token stop) { run(work, std::move(stop)); }) {
-}
+    : m_thread(
+          [this, work = std::move(work)](std::stop_token stop) { run(work, std::move(stop)); }) {}
 
 void Job::run(const Work& work, std::stop_token stop) {
   State end = State::Done;

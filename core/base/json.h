@@ -2,9 +2,10 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 
@@ -46,7 +47,9 @@ class JsonReader {
     return m_value.at(key);
   }
   JsonReader object(const std::string& key) { return {raw(key), m_origin, m_prefix + key + "."}; }
-  Place place(const std::string& key) const { return {.path = m_origin, .item = "key '" + m_prefix + key + "'"}; }
+  Place place(const std::string& key) const {
+    return {.path = m_origin, .item = "key '" + m_prefix + key + "'"};
+  }
   const std::string& origin() const { return m_origin; }
   /// Throws InputError when there are keys that nobody asked for (a misspelt option).
   void finish() const;
@@ -57,7 +60,8 @@ class JsonReader {
     const Json& value = m_value.at(key);
     try {
       if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
-        if (!value.is_number_integer()) throw InputError(place(key), "a whole number", value.dump());
+        if (!value.is_number_integer())
+          throw InputError(place(key), "a whole number", value.dump());
       } else if constexpr (std::is_floating_point_v<T>) {
         if (!value.is_number()) throw InputError(place(key), "a number", value.dump());
       } else if constexpr (std::is_same_v<T, bool>) {

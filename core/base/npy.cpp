@@ -17,16 +17,20 @@ struct Header {
   std::vector<int64_t> shape;
 };
 
-std::string matchOne(const std::string& text, const char* pattern, const Place& place, const char* what) {
+std::string matchOne(const std::string& text, const char* pattern, const Place& place,
+                     const char* what) {
   std::smatch match;
-  if (!std::regex_search(text, match, std::regex(pattern))) throw InputError(place, what, text.substr(0, 120));
+  if (!std::regex_search(text, match, std::regex(pattern)))
+    throw InputError(place, what, text.substr(0, 120));
   return match[1];
 }
 
 Header parseHeader(const std::string& text, const Place& place) {
   Header out;
-  out.descr = matchOne(text, R"('descr':\s*'([^']*)')", place, "an NPY header with a plain 'descr'");
-  out.fortran = matchOne(text, R"('fortran_order':\s*(True|False))", place, "'fortran_order'") == "True";
+  out.descr =
+      matchOne(text, R"('descr':\s*'([^']*)')", place, "an NPY header with a plain 'descr'");
+  out.fortran =
+      matchOne(text, R"('fortran_order':\s*(True|False))", place, "'fortran_order'") == "True";
   const std::string shape = matchOne(text, R"('shape':\s*\(([0-9L, ]*)\))", place, "'shape'");
   uint64_t count = 1;
   for (size_t i = 0; i < shape.size();) {
@@ -39,7 +43,8 @@ Header parseHeader(const std::string& text, const Place& place) {
       value = value * 10 + static_cast<uint64_t>(shape[i] - '0');
       if (value > (uint64_t{1} << 40)) throw InputError(place, "a sensible shape", shape);
     }
-    if (value > 0 && count > (uint64_t{1} << 40) / value) throw InputError(place, "a sensible shape", shape);
+    if (value > 0 && count > (uint64_t{1} << 40) / value)
+      throw InputError(place, "a sensible shape", shape);
     count *= value;
     out.shape.push_back(static_cast<int64_t>(value));
   }
@@ -53,17 +58,24 @@ DType dtypeOf(const std::string& descr, const Place& place) {
   if (descr == "<i8") return DType::I64;
   if (descr == "<i4") return DType::I32;
   if (descr == "|u1" || descr == "|b1") return DType::U8;
-  throw InputError(place, "a little-endian number type (f2, f4, f8, i4, i8, u1)", "'" + descr + "'");
+  throw InputError(place, "a little-endian number type (f2, f4, f8, i4, i8, u1)",
+                   "'" + descr + "'");
 }
 
 const char* descrOf(DType type) {
   switch (type) {
-    case DType::F32: return "<f4";
-    case DType::F64: return "<f8";
-    case DType::F16: return "<f2";
-    case DType::I64: return "<i8";
-    case DType::I32: return "<i4";
-    case DType::U8: break;
+    case DType::F32:
+      return "<f4";
+    case DType::F64:
+      return "<f8";
+    case DType::F16:
+      return "<f2";
+    case DType::I64:
+      return "<i8";
+    case DType::I32:
+      return "<i4";
+    case DType::U8:
+      break;
   }
   return "|u1";
 }
@@ -76,7 +88,8 @@ void toRowMajor(Tensor& tensor) {
   for (int64_t i = 0; i < tensor.count(); ++i) {
     int64_t from = 0;
     for (size_t d = rank; d-- > 0;) from = from * tensor.shape[d] + index[d];
-    std::memcpy(out.data() + static_cast<size_t>(i) * item, tensor.bytes.data() + static_cast<size_t>(from) * item, item);
+    std::memcpy(out.data() + static_cast<size_t>(i) * item,
+                tensor.bytes.data() + static_cast<size_t>(from) * item, item);
     for (size_t d = rank; d-- > 0;) {
       if (++index[d] < tensor.shape[d]) break;
       index[d] = 0;
@@ -89,19 +102,22 @@ void toRowMajor(Tensor& tensor) {
 
 Tensor parseNpy(std::string_view bytes, const std::string& origin) {
   const Place place{.path = origin};
-  if (bytes.size() < 10 || bytes.substr(0, 6) != kMagic) throw InputError(place, "an NPY array", "other content");
+  if (bytes.size() < 10 || bytes.substr(0, 6) != kMagic)
+    throw InputError(place, "an NPY array", "other content");
   const int major = static_cast<unsigned char>(bytes[6]);
   const size_t lengthBytes = major >= 2 ? 4 : 2;
   if (bytes.size() < 8 + lengthBytes) throw InputError(place, "an NPY header", "a cut file");
   uint32_t length = 0;
   std::memcpy(&length, bytes.data() + 8, lengthBytes);
   const size_t start = 8 + lengthBytes + length;
-  if (length > (1u << 20) || bytes.size() < start) throw InputError(place, "an NPY header", "a cut file");
+  if (length > (1u << 20) || bytes.size() < start)
+    throw InputError(place, "an NPY header", "a cut file");
   const Header header = parseHeader(std::string(bytes.substr(8 + lengthBytes, length)), place);
   Tensor out{.dtype = dtypeOf(header.descr, place), .shape = header.shape, .bytes = {}};
   const size_t want = static_cast<size_t>(out.count()) * byteSize(out.dtype);
   if (bytes.size() - start < want)
-    throwInput(place, fmt::format("{} bytes for shape {}", want, out.shapeText()), "{}", bytes.size() - start);
+    throwInput(place, fmt::format("{} bytes for shape {}", want, out.shapeText()), "{}",
+               bytes.size() - start);
   out.bytes.resize(want);
   if (want > 0) std::memcpy(out.bytes.data(), bytes.data() + start, want);
   if (header.fortran && out.shape.size() > 1) toRowMajor(out);
@@ -126,7 +142,8 @@ std::string serialiseNpy(const Tensor& tensor) {
   std::string shape;
   for (const int64_t size : tensor.shape) shape += std::to_string(size) + ", ";
   if (tensor.shape.size() > 1) shape.resize(shape.size() - 2);
-  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", descrOf(tensor.dtype), shape);
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}",
+                                   descrOf(tensor.dtype), shape);
   header.resize((header.size() + 10 + 1 + 63) / 64 * 64 - 10 - 1, ' ');
   header += '\n';
   std::string out(kMagic);

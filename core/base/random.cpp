@@ -14,14 +14,17 @@ std::array<uint32_t, 4> block(const RandomKey& key, uint32_t index) {
 }
 
 /// (0, 1]: never zero, so that its logarithm exists.
-double openUniform(uint32_t word) { return (static_cast<double>(word) + 1.0) * 0x1p-32; }
+double openUniform(uint32_t word) {
+  return (static_cast<double>(word) + 1.0) * 0x1p-32;
+}
 
 std::array<double, 4> normalBlock(const RandomKey& key, uint32_t index) {
   const auto words = block(key, index);
   std::array<double, 4> out{};
   for (int pair = 0; pair < 2; ++pair) {
     const double radius = std::sqrt(-2.0 * std::log(openUniform(words[2 * pair])));
-    const double angle = 2.0 * std::numbers::pi * (static_cast<double>(words[2 * pair + 1]) * 0x1p-32);
+    const double angle =
+        2.0 * std::numbers::pi * (static_cast<double>(words[2 * pair + 1]) * 0x1p-32);
     out[2 * pair] = radius * std::cos(angle);
     out[2 * pair + 1] = radius * std::sin(angle);
   }
@@ -57,6 +60,8 @@ double uniformAt(const RandomKey& key, uint32_t index) {
   return static_cast<double>(block(key, index / 4)[index % 4]) * 0x1p-32;
 }
 
-double normalAt(const RandomKey& key, uint32_t index) { return normalBlock(key, index / 4)[index % 4]; }
+double normalAt(const RandomKey& key, uint32_t index) {
+  return normalBlock(key, index / 4)[index % 4];
+}
 
 }  // namespace marey

@@ -34,7 +34,8 @@ float halfToFloat(uint16_t h) {
   const uint32_t sign = (h & 0x8000u) << 16;
   const uint32_t exponent = (h >> 10) & 0x1Fu;
   const uint32_t mantissa = h & 0x3FFu;
-  if (exponent == 0) return std::copysign(std::ldexp(static_cast<float>(mantissa), -24), sign ? -1.f : 1.f);
+  if (exponent == 0)
+    return std::copysign(std::ldexp(static_cast<float>(mantissa), -24), sign ? -1.f : 1.f);
   const uint32_t bits = exponent == 31 ? sign | 0x7F800000u | (mantissa << 13)
                                        : sign | ((exponent + 112) << 23) | (mantissa << 13);
   return std::bit_cast<float>(bits);
@@ -68,12 +69,18 @@ std::vector<To> convert(const Tensor& t) {
 template <typename To>
 std::vector<To> convertAny(const Tensor& t) {
   switch (t.dtype) {
-    case DType::F32: return convert<float, To>(t);
-    case DType::F64: return convert<double, To>(t);
-    case DType::I64: return convert<int64_t, To>(t);
-    case DType::I32: return convert<int32_t, To>(t);
-    case DType::U8: return convert<uint8_t, To>(t);
-    case DType::F16: break;
+    case DType::F32:
+      return convert<float, To>(t);
+    case DType::F64:
+      return convert<double, To>(t);
+    case DType::I64:
+      return convert<int64_t, To>(t);
+    case DType::I32:
+      return convert<int32_t, To>(t);
+    case DType::U8:
+      return convert<uint8_t, To>(t);
+    case DType::F16:
+      break;
   }
   const auto halves = convert<uint16_t, uint16_t>(t);
   std::vector<To> out(halves.size());
@@ -102,9 +109,12 @@ Tensor parseTensor(const std::string& key, const Json& entry, std::string_view d
   const Place place{.path = origin, .item = "tensor '" + key + "'"};
   JsonReader reader(entry, origin, key + ".");
   const auto typeName = reader.required<std::string>("dtype");
-  const auto type = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return typeName == t.name; });
-  if (type == kTypes.end()) throw InputError(place, "a type of F32, F64, F16, I64, I32, U8", typeName);
-  Tensor out{.dtype = type->type, .shape = reader.required<std::vector<int64_t>>("shape"), .bytes = {}};
+  const auto type =
+      std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return typeName == t.name; });
+  if (type == kTypes.end())
+    throw InputError(place, "a type of F32, F64, F16, I64, I32, U8", typeName);
+  Tensor out{
+      .dtype = type->type, .shape = reader.required<std::vector<int64_t>>("shape"), .bytes = {}};
   const auto range = reader.required<std::vector<uint64_t>>("data_offsets");
   uint64_t count = 1;
   for (const int64_t size : out.shape) {
@@ -113,9 +123,11 @@ Tensor parseTensor(const std::string& key, const Json& entry, std::string_view d
     count *= static_cast<uint64_t>(size);
   }
   if (range.size() != 2 || range[0] > range[1] || range[1] > data.size())
-    throw InputError(place, fmt::format("data within {} bytes", data.size()), "offsets beyond the file (is it cut?)");
+    throw InputError(place, fmt::format("data within {} bytes", data.size()),
+                     "offsets beyond the file (is it cut?)");
   if (range[1] - range[0] != count * type->bytes)
-    throwInput(place, fmt::format("{} bytes", count * type->bytes), "{} bytes", range[1] - range[0]);
+    throwInput(place, fmt::format("{} bytes", count * type->bytes), "{} bytes",
+               range[1] - range[0]);
   out.bytes.resize(range[1] - range[0]);
   if (!out.bytes.empty()) std::memcpy(out.bytes.data(), data.data() + range[0], out.bytes.size());
   return out;
@@ -123,19 +135,37 @@ Tensor parseTensor(const std::string& key, const Json& entry, std::string_view d
 
 }  // namespace
 
-size_t byteSize(DType type) { return info(type).bytes; }
-const char* name(DType type) { return info(type).name; }
+size_t byteSize(DType type) {
+  return info(type).bytes;
+}
+const char* name(DType type) {
+  return info(type).name;
+}
 
 int64_t Tensor::count() const {
   return std::accumulate(shape.begin(), shape.end(), int64_t{1}, std::multiplies<>());
 }
-std::string Tensor::shapeText() const { return textOf(shape); }
-Tensor Tensor::fromFloats(std::vector<int64_t> shape, const float* v) { return fromValues(DType::F32, std::move(shape), v); }
-Tensor Tensor::fromDoubles(std::vector<int64_t> shape, const double* v) { return fromValues(DType::F64, std::move(shape), v); }
-Tensor Tensor::fromInt64(std::vector<int64_t> shape, const int64_t* v) { return fromValues(DType::I64, std::move(shape), v); }
-std::vector<float> Tensor::toFloats() const { return convertAny<float>(*this); }
-std::vector<double> Tensor::toDoubles() const { return convertAny<double>(*this); }
-std::vector<int64_t> Tensor::toInt64() const { return convertAny<int64_t>(*this); }
+std::string Tensor::shapeText() const {
+  return textOf(shape);
+}
+Tensor Tensor::fromFloats(std::vector<int64_t> shape, const float* v) {
+  return fromValues(DType::F32, std::move(shape), v);
+}
+Tensor Tensor::fromDoubles(std::vector<int64_t> shape, const double* v) {
+  return fromValues(DType::F64, std::move(shape), v);
+}
+Tensor Tensor::fromInt64(std::vector<int64_t> shape, const int64_t* v) {
+  return fromValues(DType::I64, std::move(shape), v);
+}
+std::vector<float> Tensor::toFloats() const {
+  return convertAny<float>(*this);
+}
+std::vector<double> Tensor::toDoubles() const {
+  return convertAny<double>(*this);
+}
+std::vector<int64_t> Tensor::toInt64() const {
+  return convertAny<int64_t>(*this);
+}
 
 Tensor Tensor::as(DType type) const {
   if (type == dtype) return *this;
@@ -168,7 +198,8 @@ TensorFile parseTensorFile(std::string_view bytes, const std::string& origin) {
     throwInput({.path = origin}, fmt::format("a header within {} bytes", bytes.size()),
                "a header of {} bytes (not a Marey file, or cut)", headerSize);
   const Json header = parseJson(bytes.substr(8, headerSize), origin);
-  if (!header.is_object()) throw InputError({.path = origin}, "a JSON object as header", header.type_name());
+  if (!header.is_object())
+    throw InputError({.path = origin}, "a JSON object as header", header.type_name());
   TensorFile out;
   for (const auto& [key, entry] : header.items()) {
     if (key != "__metadata__") {

@@ -44,7 +44,9 @@ std::vector<T> blended(const std::vector<T>& values, size_t width, const std::ve
   return out;
 }
 
-Vec3 mixPositions(const Vec3& a, const Vec3& b, float weight) { return a + weight * (b - a); }
+Vec3 mixPositions(const Vec3& a, const Vec3& b, float weight) {
+  return a + weight * (b - a);
+}
 Quat mixRotations(const Quat& a, const Quat& b, float weight) {
   return a.slerp(weight, b).normalized();
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <initializer_list>
 #include <span>
 #include <string_view>
 
@@ -15,15 +14,15 @@ namespace {
 /// Names of one part in lower case without prefix and punctuation, in order of preference: a
 /// name that another habit uses for a neighbouring joint comes last. "<s>" is the side as a word,
 /// "<l>" as a letter.
-using Habits = std::initializer_list<std::string_view>;
-constexpr Habits kUpperLeg = {"<s>upleg", "<l>femur",   "upperleg<l>", "<s>upperleg", "<l>upperleg",
-                              "upleg<l>", "<s>thigh",   "<l>thigh",    "thigh<l>",    "<s>hip",
-                              "<l>hip",   "<l>thighbend"};
-constexpr Habits kUpperArm = {"<s>arm",    "<l>humerus",  "upperarm<l>", "<s>upperarm",
-                              "<l>upperarm", "<l>shldrbend", "<l>shldr",   "<s>shoulder",
-                              "<l>shoulder"};
-constexpr Habits kAnkle = {"<s>ankle", "<l>ankle", "<s>foot", "<l>foot", "foot<l>"};
-constexpr Habits kHips = {"hips", "hip", "pelvis", "root", "vicon", "jointroot"};
+using Habits = std::span<const std::string_view>;
+constexpr std::string_view kUpperLeg[] = {"<s>upleg",    "<l>femur", "upperleg<l>", "<s>upperleg",
+                                          "<l>upperleg", "upleg<l>", "<s>thigh",    "<l>thigh",
+                                          "thigh<l>",    "<s>hip",   "<l>hip",      "<l>thighbend"};
+constexpr std::string_view kUpperArm[] = {"<s>arm",      "<l>humerus",  "upperarm<l>",
+                                          "<s>upperarm", "<l>upperarm", "<l>shldrbend",
+                                          "<l>shldr",    "<s>shoulder", "<l>shoulder"};
+constexpr std::string_view kAnkle[] = {"<s>ankle", "<l>ankle", "<s>foot", "<l>foot", "foot<l>"};
+constexpr std::string_view kHips[] = {"hips", "hip", "pelvis", "root", "vicon", "jointroot"};
 
 /// "mixamorig:LeftUpLeg" -> "leftupleg", "UpperLeg_L" -> "upperlegl".
 std::string plainName(const std::string& name) {
@@ -111,10 +110,10 @@ bool contains(const std::vector<std::string>& plain, std::string_view part) {
 
 /// The four toes: end sites that are joints of the skeleton, else paws. Left first.
 std::vector<int> quadrupedFeet(const std::vector<std::string>& plain) {
-  static constexpr std::array<Habits, 2> paws = {Habits{"<s>handsite", "<s>hand", "<s>frontfoot"},
-                                                 Habits{"<s>footsite", "<s>foot", "<s>hindfoot"}};
+  static constexpr std::string_view fore[] = {"<s>handsite", "<s>hand", "<s>frontfoot"};
+  static constexpr std::string_view hind[] = {"<s>footsite", "<s>foot", "<s>hindfoot"};
   std::vector<int> out;
-  for (const Habits& paw : paws)
+  for (const Habits paw : {Habits(fore), Habits(hind)})
     for (const bool left : {true, false})
       if (const int joint = findPart(plain, paw, left); joint >= 0) out.push_back(joint);
   return out;
@@ -161,8 +160,7 @@ std::vector<int> jointsByName(const Skeleton& skeleton, const std::string& comma
   size_t begin = 0;
   while (begin <= commaSeparated.size()) {
     const size_t end = std::min(commaSeparated.find(',', begin), commaSeparated.size());
-    const std::string name =
-        trimmed(std::string_view(commaSeparated).substr(begin, end - begin));
+    const std::string name = trimmed(std::string_view(commaSeparated).substr(begin, end - begin));
     const int joint = skeleton.find(name);
     if (joint < 0)
       throwInput({.path = "joint names"}, "one of " + joined(skeleton.names), "'{}'", name);

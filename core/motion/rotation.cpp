@@ -15,7 +15,9 @@ constexpr double kTurn = 2.0 * kPi;
 /// difference of the outer angles is determined: float32 rotations carry no more.
 constexpr double kSingular = 1e-6;
 
-double wrapped(double angle) { return std::remainder(angle, kTurn); }
+double wrapped(double angle) {
+  return std::remainder(angle, kTurn);
+}
 
 /// `angle` plus the whole turns that bring it nearest to `target`.
 double nearestTurn(double angle, double target) {
@@ -154,8 +156,7 @@ Vec3d logMap(const Quatd& rotation) {
 Quatd expMap(const Vec3d& axisAngle) {
   const double angle = axisAngle.norm();
   // sin(angle / 2) / angle = 1/2 - angle^2 / 48 + ... near zero
-  const double factor =
-      angle < 1e-4 ? 0.5 - angle * angle / 48.0 : std::sin(angle / 2.0) / angle;
+  const double factor = angle < 1e-4 ? 0.5 - angle * angle / 48.0 : std::sin(angle / 2.0) / angle;
   Quatd out;
   out.w() = std::cos(angle / 2.0);
   out.vec() = factor * axisAngle;
@@ -192,7 +193,17 @@ double angleBetween(const Quatd& a, const Quatd& b) {
 Quatd shortestArc(const Vec3d& from, const Vec3d& to) {
   if (!(from.norm() > 0.0) || !(to.norm() > 0.0))
     throw NumericError("rotation between directions: expected two directions, found a zero vector");
-  return Quatd::FromTwoVectors(from, to);
+  const Vec3d a = from.normalized(), b = to.normalized();
+  const Vec3d half = a + b;
+  if (half.norm() < 1e-12) {  // opposite: a half turn about any axis across
+    Quatd out(0.0, 0.0, 0.0, 0.0);
+    out.vec() = a.unitOrthogonal();
+    return out;
+  }
+  const Vec3d middle = half.normalized();
+  Quatd out(a.dot(middle), 0.0, 0.0, 0.0);
+  out.vec() = a.cross(middle);
+  return out.normalized();
 }
 
 }  // namespace marey

@@ -2,12 +2,13 @@
 // double precision, because Euler angles lose digits near their singularity.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <array>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace marey {
 

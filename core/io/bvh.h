@@ -1,0 +1,33 @@
+// Biovision hierarchies: text with a tree of joints, channels in any order per joint, degrees,
+// and one line of numbers per frame. The format states no unit.
+#pragma once
+
+#include "io/format.h"
+
+namespace marey::io {
+
+int canReadBvh(std::string_view head);
+/// One clip. `origin` names the bytes in errors. Positions channels replace the joint's offset;
+/// rotation channels turn in the order listed. Frame times rounded in the file are snapped to the
+/// common rate they stand for, repeated joint names are numbered; both are noted.
+/// Throws InputError with the line.
+Clip parseBvh(std::string_view bytes, const std::string& origin, const ReadOptions& options = {});
+std::vector<Clip> readBvh(std::string_view bytes, const std::filesystem::path& path,
+                          const ReadOptions& options);
+
+/// Degrees, centimetres unless options.unit says otherwise. Rotations are unwrapped; a clip
+/// without rotations becomes translations of every joint with zero rotation, and the recipe says
+/// so. The recipe goes to PATH.recipe.json. Throws InputError or FileError.
+std::vector<std::filesystem::path> writeBvh(const Clip& clip, const std::filesystem::path& path,
+                                            const WriteOptions& options);
+
+/// The rate that a written frame time stands for: 1 / time where that is whole, else the common
+/// rate whose frame time, rounded or cut to the digits written, is the text. `text` is a positive
+/// number (checked by the caller).
+struct SnappedRate {
+  double fps = 0.0;
+  bool snapped = false;
+};
+SnappedRate rateOfFrameTime(std::string_view text);
+
+}  // namespace marey::io

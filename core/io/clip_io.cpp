@@ -1,0 +1,119 @@
+#include "io/clip_io.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "io/bvh.h"
+#include "io/text.h"
+
+namespace marey::io {
+namespace {
+
+constexpr size_t kHeadBytes = 4096;
+
+std::string lowerExtension(const std::filesystem::path& path) {
+  std::string out = path.extension().string();
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+bool hasExtension(const ClipFormat& format, const std::string& extension) {
+  return std::find(format.extensions.begin(), format.extensions.end(), extension) !=
+         format.extensions.end();
+}
+
+std::string formatNames(bool writable) {
+  std::string out;
+  for (const ClipFormat& format : clipFormats())
+    if (!writable || format.write != nullptr) out += (out.empty() ? "" : ", ") + format.name;
+  return out;
+}
+
+const ClipFormat& formatForWriting(const std::filesystem::path& path, const WriteOptions& options) {
+  if (!options.format.empty()) {
+    const ClipFormat& format = formatByName(options.format);
+    if (format.write == nullptr)
+      throw UsageError(fmt::format("format: expected one that can be written ({}), found '{}'",
+                                   formatNames(true), options.format));
+    return format;
+  }
+  for (const ClipFormat& format : clipFormats())
+    if (format.write != nullptr && hasExtension(format, lowerExtension(path))) return format;
+  throw UsageError(
+      fmt::format("{}: expected the extension of a format that can be written ({}), found '{}'",
+                  path.string(), formatNames(true), path.extension().string()));
+}
+
+}  // namespace
+
+const std::vector<ClipFormat>& clipFormats() {
+  static const std::vector<ClipFormat> formats = {
+      {"bvh", "Biovision hierarchy", {".bvh"}, canReadBvh, readBvh, nullptr},
+  };
+  return formats;
+}
+
+const ClipFormat* formatOfContent(std::string_view head) {
+  const ClipFormat* best = nullptr;
+  int bestScore = 0;
+  for (const ClipFormat& format : clipFormats()) {
+    const int score = format.canRead != nullptr ? format.canRead(head) : 0;
+    if (score <= bestScore) continue;
+    best = &format;
+    bestScore = score;
+  }
+  return best;
+}
+
+const ClipFormat& formatByName(const std::string& name) {
+  for (const ClipFormat& format : clipFormats())
+    if (format.name == name) return format;
+  throw UsageError(fmt::format("format: expected one of {}, found '{}'", formatNames(false), name));
+}
+
+std::string readHead(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw FileError(fmt::format("{}: cannot read", path.string()));
+  std::string head(kHeadBytes, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<size_t>(in.gcount()));
+  return head;
+}
+
+bool isMotionFile(const std::filesystem::path& path) {
+  const std::string extension = lowerExtension(path);
+  const auto& formats = clipFormats();
+  const bool named = std::any_of(formats.begin(), formats.end(), [&](const ClipFormat& f) {
+    return f.read != nullptr && hasExtension(f, extension);
+  });
+  std::error_code ec;
+  return named && std::filesystem::is_regular_file(path, ec) &&
+         formatOfContent(readHead(path)) != nullptr;
+}
+
+std::vector<Clip> readClips(const std::filesystem::path& path, const ReadOptions& options) {
+  const std::string bytes = readFile(path);
+  const ClipFormat* format = formatOfContent(std::string_view(bytes).substr(0, kHeadBytes));
+  if (format == nullptr)
+    throw InputError({.path = path.string()}, "a motion file (" + formatNames(false) + ")",
+                     bytes.empty() ? "an empty file" : "a file that begins with " + excerpt(bytes));
+  return format->read(bytes, path, options);
+}
+
+Clip readClip(const std::filesystem::path& path, const ReadOptions& options) {
+  std::vector<Clip> clips = readClips(path, options);
+  if (clips.size() != 1) throwInput({.path = path.string()}, "one clip", "{} clips", clips.size());
+  return std::move(clips.front());
+}
+
+std::vector<std::filesystem::path> writeClip(const Clip& clip, const std::filesystem::path& path,
+                                             const WriteOptions& options) {
+  validate(clip);
+  return formatForWriting(path, options).write(clip, path, options);
+}
+
+}  // namespace marey::io

@@ -1,0 +1,28 @@
+// Motion files in and out, whatever their format.
+#pragma once
+
+#include "io/format.h"
+
+namespace marey::io {
+
+/// Every clip of a file, in metres and Y up; the format is found by content, not by name.
+/// Throws FileError or InputError (with line or frame).
+std::vector<Clip> readClips(const std::filesystem::path& path, const ReadOptions& options = {});
+/// The only clip of a file. Throws InputError when the file holds several.
+Clip readClip(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The format that can read these first bytes of a file, or null.
+const ClipFormat* formatOfContent(std::string_view head);
+/// The format of that name. Throws UsageError naming the formats there are.
+const ClipFormat& formatByName(const std::string& name);
+/// Whether a file has the extension and the first bytes of a motion format.
+bool isMotionFile(const std::filesystem::path& path);
+/// First bytes of a file, as formatOfContent wants them. Throws FileError.
+std::string readHead(const std::filesystem::path& path);
+
+/// Writes a clip in options.format, else the format of the path's extension; returns every file
+/// written. Throws UsageError (unknown format or extension), InputError or FileError.
+std::vector<std::filesystem::path> writeClip(const Clip& clip, const std::filesystem::path& path,
+                                             const WriteOptions& options = {});
+
+}  // namespace marey::io

@@ -1,0 +1,104 @@
+#include "io/normalise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "motion/kinematics.h"
+
+namespace marey::io {
+namespace {
+
+/// A quarter turn about X of the whole clip: sign -1 takes +Z to +Y, +1 takes it back.
+void turnAboutX(Clip& clip, float sign) {
+  const auto turned = [sign](const Vec3& p) { return Vec3(p.x(), -sign * p.z(), sign * p.y()); };
+  for (Vec3& p : clip.positions) p = turned(p);
+  Skeleton skeleton = *clip.skeleton;
+  skeleton.offsets[0] = turned(skeleton.offsets[0]);
+  if (!clip.transforms) {  // offsets of clips without rotations are in world axes
+    for (size_t j = 1; j < skeleton.offsets.size(); ++j)
+      skeleton.offsets[j] = turned(skeleton.offsets[j]);
+    for (auto& site : skeleton.endSites) site.offset = turned(site.offset);
+  } else {
+    const Quat turn(Eigen::AngleAxisf(sign * std::numbers::pi_v<float> / 2.0f, Vec3::UnitX()));
+    const auto width = static_cast<size_t>(clip.jointCount());
+    for (size_t i = 0; i < clip.transforms->rotations.size(); i += width) {
+      clip.transforms->rotations[i] = turn * clip.transforms->rotations[i];
+      clip.transforms->translations[i] = turned(clip.transforms->translations[i]);
+    }
+  }
+  clip.skeleton = std::make_shared<const Skeleton>(std::move(skeleton));
+}
+
+void applyUnit(Clip& clip, const FormatFacts& facts, const ReadOptions& options) {
+  LengthUnit unit;
+  if (!options.unit.empty()) {
+    unit = unitByName(options.unit);
+    clip.source.notes.push_back("unit " + unit.name + " was given");
+  } else if (facts.unit) {
+    unit = *facts.unit;
+  } else {
+    const UnitGuess guess = guessUnit(*clip.skeleton);
+    unit = guess.unit;
+    clip.source.notes.push_back(fmt::format("unit {} is {}: {}", unit.name,
+                                            guess.certain ? "a guess" : "an uncertain guess",
+                                            guess.evidence));
+  }
+  clip.source.unit = unit.name;
+  clip.source.metresPerUnit = unit.metres;
+  scaleLengths(clip, unit.metres);
+}
+
+void applyUp(Clip& clip, const FormatFacts& facts, const ReadOptions& options) {
+  std::string up = facts.up.value_or("");
+  if (!options.up.empty()) {
+    up = checkedUp(options.up);
+    clip.source.notes.push_back("up axis " + up + " was given");
+  } else if (!facts.up) {
+    const UpGuess guess = guessUp(clip);
+    up = guess.up;
+    if (up != "y") clip.source.notes.push_back("up axis " + up + " is a guess: " + guess.evidence);
+  }
+  clip.source.up = up;
+  if (up == "z") turnToYUp(clip);
+}
+
+void applyRate(Clip& clip, const ReadOptions& options) {
+  if (!options.fps) return;
+  clip.source.notes.push_back(
+      fmt::format("{:g} frames per second were given in place of {:g}", *options.fps, clip.fps));
+  clip.fps = *options.fps;
+}
+
+}  // namespace
+
+Clip normalised(Clip clip, const FormatFacts& facts, const ReadOptions& options) {
+  if (clip.transforms) clip.positions = forwardKinematics(*clip.skeleton, *clip.transforms);
+  validate(clip);
+  applyUnit(clip, facts, options);
+  applyUp(clip, facts, options);
+  applyRate(clip, options);
+  validate(clip);
+  return options.dropStaticRoot ? withoutStaticRoot(std::move(clip)) : clip;
+}
+
+void turnToYUp(Clip& clip) {
+  turnAboutX(clip, -1.0f);
+}
+void turnToZUp(Clip& clip) {
+  turnAboutX(clip, 1.0f);
+}
+
+void scaleLengths(Clip& clip, double factor) {
+  if (factor == 1.0) return;
+  const auto scale = static_cast<float>(factor);
+  for (Vec3& p : clip.positions) p *= scale;
+  if (clip.transforms)
+    for (Vec3& p : clip.transforms->translations) p *= scale;
+  Skeleton skeleton = *clip.skeleton;
+  for (Vec3& p : skeleton.offsets) p *= scale;
+  for (auto& site : skeleton.endSites) site.offset *= scale;
+  clip.skeleton = std::make_shared<const Skeleton>(std::move(skeleton));
+}
+
+}  // namespace marey::io

@@ -1,0 +1,45 @@
+// Units of length and the guess which one a file is in, and which axis points up.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "motion/clip.h"
+
+namespace marey::io {
+
+struct LengthUnit {
+  std::string name;
+  double metres = 1.0;
+};
+
+/// m, cm, mm, inch, foot, cmu. "cmu" is the unit of the CMU data base and of the field's NPZ files
+/// derived from it: one inch divided by the ASF header's length 0.45, 5.6444 cm.
+const std::vector<LengthUnit>& lengthUnits();
+/// Throws UsageError naming the units there are.
+const LengthUnit& unitByName(const std::string& name);
+
+struct UnitGuess {
+  LengthUnit unit;
+  double bodyM = 0.0;    ///< body size that follows from the guess, metres
+  bool certain = false;  ///< bodyM is that of a person (1.2 to 2.3 m) or of an animal (0.4 to 2 m)
+  std::string evidence;
+};
+
+/// From the size of the rest pose in file units: leg plus spine of a person, times 1.2 for foot
+/// and head; the largest extent where joints are not known by name.
+UnitGuess guessUnit(const Skeleton& skeletonInFileUnits);
+
+struct UpGuess {
+  std::string up = "y";
+  bool certain = false;
+  std::string evidence;
+};
+
+/// From the mean direction from feet to shoulders over the clip (positions in file axes).
+UpGuess guessUp(const Clip& clip);
+
+/// "y" or "z". Throws UsageError otherwise.
+const std::string& checkedUp(const std::string& up);
+
+}  // namespace marey::io

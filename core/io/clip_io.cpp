@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "io/asf_amc.h"
 #include "io/bvh.h"
 #include "io/text.h"
 
@@ -53,6 +54,7 @@ const ClipFormat& formatForWriting(const std::filesystem::path& path, const Writ
 const std::vector<ClipFormat>& clipFormats() {
   static const std::vector<ClipFormat> formats = {
       {"bvh", "Biovision hierarchy", {".bvh"}, canReadBvh, readBvh, nullptr},
+      {"amc", "Acclaim motion (AMC with its ASF skeleton)", {".amc"}, canReadAmc, readAmc, nullptr},
   };
   return formats;
 }

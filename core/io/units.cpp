@@ -11,8 +11,8 @@
 namespace marey::io {
 namespace {
 
-/// Foot and head add about a fifth to hip-to-ankle plus hip-to-head-joint.
-constexpr double kBodyPerLegAndSpine = 1.2;
+/// Foot and head add about 0.3 of hip-to-ankle plus hip-to-head-joint.
+constexpr double kBodyPerLegAndSpine = 1.3;
 struct Range {
   double low, high;
 };
@@ -98,7 +98,7 @@ UnitGuess guessUnit(const Skeleton& skeleton) {
   const double leg = legs ? chainLength(skeleton, roles.feet[0], roles.leftHip) : 0.0;
   const double spine = legs ? spineLength(skeleton, roles) : 0.0;
   double size = kBodyPerLegAndSpine * (leg + spine);
-  std::string what = "body size (1.2 x leg plus spine)";
+  std::string what = "body size (1.3 x leg plus spine)";
   if (roles.quadruped || !(leg > 0.0) || !(spine > 0.0)) {
     size = largestExtent(skeleton);
     what = "largest extent of the rest pose";

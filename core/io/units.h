@@ -26,7 +26,7 @@ struct UnitGuess {
   std::string evidence;
 };
 
-/// From the size of the rest pose in file units: leg plus spine of a person, times 1.2 for foot
+/// From the size of the rest pose in file units: leg plus spine of a person, times 1.3 for foot
 /// and head; the largest extent where joints are not known by name.
 UnitGuess guessUnit(const Skeleton& skeletonInFileUnits);
 

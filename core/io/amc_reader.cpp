@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+#include "base/atomic_file.h"
+#include "io/asf_amc.h"
+#include "io/normalise.h"
+#include "io/text.h"
+
+namespace marey::io {
+namespace {
+
+constexpr double kCmuFps = 120.0;
+
+class AmcParser {
+ public:
+  AmcParser(std::string_view bytes, const std::string& origin, const AsfSkeleton& asf)
+      : m_lines(bytes, origin), m_asf(asf), m_degrees(asf.degrees) {
+    for (int j = 0; j < asf.skeleton.jointCount(); ++j) {
+      m_joints.emplace(asf.skeleton.names[static_cast<size_t>(j)], j);
+      if (!asf.channels[static_cast<size_t>(j)].empty()) ++m_moving;
+    }
+    m_given.assign(asf.skeleton.names.size(), 0);
+  }
+
+  JointTransforms parse() {
+    while (const auto line = m_lines.nextFilled()) {
+      std::string_view rest = trim(*line);
+      if (rest.starts_with('#')) continue;
+      if (rest.starts_with(':'))
+        setting(rest);
+      else if (const auto number = parseNumber(rest))
+        startFrame(*number);
+      else
+        readBone(rest);
+    }
+    finishFrame();
+    if (m_frame == 0) throw InputError(m_lines.place(), "at least one frame", "zero frames");
+    return std::move(m_out);
+  }
+
+ private:
+  void setting(std::string_view key) {
+    if (sameIgnoringCase(key, ":degrees")) m_degrees = true;
+    if (sameIgnoringCase(key, ":radians")) m_degrees = false;
+  }
+
+  void startFrame(double number) {
+    finishFrame();
+    if (m_frame > 0 && number != m_number + 1.0)
+      throwInput(m_lines.place(), fmt::format("frame {:g}", m_number + 1.0), "frame {:g}", number);
+    m_number = number;
+    ++m_frame;
+    m_count = 0;
+    std::fill(m_given.begin(), m_given.end(), 0);
+    const Skeleton& s = m_asf.skeleton;
+    m_out.rotations.resize(m_out.rotations.size() + s.names.size(), Quat::Identity());
+    m_out.translations.insert(m_out.translations.end(), s.offsets.begin(), s.offsets.end());
+  }
+
+  /// Every joint with degrees of freedom was given.
+  void finishFrame() const {
+    if (m_frame == 0 || m_count == m_moving) return;
+    for (size_t j = 0; j < m_given.size(); ++j)
+      if (m_given[j] == 0 && !m_asf.channels[j].empty())
+        throw InputError({.path = m_lines.origin(), .line = m_lines.line(), .frame = m_frame},
+                         "values of bone '" + m_asf.skeleton.names[j] + "'", "none");
+  }
+
+  void readBone(std::string_view rest) {
+    const std::string_view name = takeWord(rest);
+    if (m_frame == 0)
+      throw InputError(m_lines.place(), "a frame number before the first bone", excerpt(name));
+    const auto joint = m_joints.find(name);
+    if (joint == m_joints.end())
+      throw InputError(m_lines.place(), "a bone of the ASF skeleton", excerpt(name));
+    const auto j = static_cast<size_t>(joint->second);
+    if (m_given[j]++ != 0)
+      throw InputError(m_lines.place(), "every bone once per frame", excerpt(name) + " again");
+    if (!m_asf.channels[j].empty()) ++m_count;
+    pose(j, rest);
+  }
+
+  void pose(size_t j, std::string_view rest) {
+    const double unit = m_degrees ? std::numbers::pi / 180.0 : 1.0;
+    Quatd motion = Quatd::Identity();
+    Vec3d shift = Vec3d::Zero();
+    for (const AsfChannel& channel : m_asf.channels[j]) {
+      const double value = take(j, rest);
+      if (channel.rotation)
+        motion = axisRotation(channel.axis, value * unit) * motion;
+      else
+        shift[channel.axis] += value;
+    }
+    if (!trim(rest).empty())
+      throw InputError(place(j), fmt::format("{} numbers", m_asf.channels[j].size()),
+                       "more: " + excerpt(trim(rest)));
+    const size_t at = m_out.rotations.size() - m_given.size() + j;
+    const Quatd& axis = m_asf.axes[j];
+    m_out.rotations[at] = (axis * motion * axis.conjugate()).cast<float>().normalized();
+    m_out.translations[at] += shift.cast<float>();
+  }
+
+  double take(size_t j, std::string_view& rest) const {
+    double value = 0.0;
+    const NumberResult result = takeNumber(rest, value);
+    if (result == NumberResult::Number) return value;
+    throw InputError(place(j), fmt::format("{} finite numbers", m_asf.channels[j].size()),
+                     result == NumberResult::End ? "fewer" : excerpt(takeWord(rest)));
+  }
+
+  Place place(size_t j) const {
+    return {.path = m_lines.origin(),
+            .line = m_lines.line(),
+            .frame = m_frame,
+            .item = "bone '" + m_asf.skeleton.names[j] + "'"};
+  }
+
+  LineReader m_lines;
+  const AsfSkeleton& m_asf;
+  bool m_degrees = true;
+  std::map<std::string, int, std::less<>> m_joints;
+  size_t m_moving = 0;        ///< joints with degrees of freedom
+  std::vector<char> m_given;  ///< per joint, in this frame
+  size_t m_count = 0;
+  double m_number = 0.0;
+  int64_t m_frame = 0;
+  JointTransforms m_out;
+};
+
+/// Intrinsic order: the list backwards, since its turns are about fixed axes.
+std::string rotationOrder(const std::vector<AsfChannel>& channels) {
+  std::string out;
+  for (auto it = channels.rbegin(); it != channels.rend(); ++it)
+    if (it->rotation) out += "XYZ"[it->axis];
+  return out;
+}
+
+size_t commonPrefix(const std::string& a, const std::string& b) {
+  const auto [end, ignored] = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
+  return static_cast<size_t>(end - a.begin());
+}
+
+}  // namespace
+
+int canReadAmc(std::string_view head) {
+  LineReader lines(head, {});
+  while (const auto line = lines.nextFilled()) {
+    const std::string_view text = trim(*line);
+    if (text.starts_with('#')) continue;
+    for (const std::string_view key : {":FULLY-SPECIFIED", ":DEGREES", ":RADIANS"})
+      if (sameIgnoringCase(text, key)) return 95;
+    return 0;
+  }
+  return 0;
+}
+
+Clip parseAmc(std::string_view bytes, const std::string& origin, const AsfSkeleton& asf,
+              const ReadOptions& options) {
+  Clip clip;
+  clip.name = std::filesystem::path(origin).stem().string();
+  clip.transforms = AmcParser(bytes, origin, asf).parse();
+  clip.skeleton = std::make_shared<const Skeleton>(asf.skeleton);
+  clip.fps = kCmuFps;
+  clip.source.path = origin;
+  clip.source.format = "amc";
+  clip.source.fps = kCmuFps;
+  if (!options.fps)
+    clip.source.notes.push_back(
+        "AMC states no frame rate: 120 is assumed, as in the CMU data base");
+  for (const auto& channels : asf.channels)
+    clip.source.eulerOrders.push_back(rotationOrder(channels));
+  return normalised(std::move(clip), {.unit = asf.unit, .up = "y"}, options);
+}
+
+std::filesystem::path asfBeside(const std::filesystem::path& amc) {
+  const std::string stem = amc.stem().string();
+  std::filesystem::path folder = amc.parent_path();
+  if (folder.empty()) folder = ".";
+  std::vector<std::filesystem::path> all;
+  std::error_code ec;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ec))
+    if (sameIgnoringCase(entry.path().extension().string(), ".asf")) all.push_back(entry.path());
+  std::sort(all.begin(), all.end());
+  const auto best = std::max_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
+    const std::string x = a.stem().string(), y = b.stem().string();
+    const size_t inX = commonPrefix(x, stem), inY = commonPrefix(y, stem);
+    return inX != inY ? inX < inY : x.size() > y.size();
+  });
+  const bool related = best != all.end() && commonPrefix(best->stem().string(), stem) > 0;
+  if (!related && all.size() != 1)
+    throw InputError({.path = amc.string()}, "its ASF skeleton beside it (or a given one)",
+                     all.empty() ? "no ASF file" : "none with a similar name");
+  return *best;
+}
+
+std::vector<Clip> readAmc(std::string_view bytes, const std::filesystem::path& path,
+                          const ReadOptions& options) {
+  const std::filesystem::path asfPath = options.asf.empty() ? asfBeside(path) : options.asf;
+  const AsfSkeleton asf = parseAsf(readFile(asfPath), asfPath.string());
+  Clip clip = parseAmc(bytes, path.string(), asf, options);
+  clip.source.notes.insert(clip.source.notes.begin(),
+                           "skeleton from " + asfPath.filename().string());
+  return {std::move(clip)};
+}
+
+}  // namespace marey::io

@@ -35,7 +35,26 @@ std::string readEntry(zip_t* archive, zip_uint64_t index, const zip_stat_t& stat
       throwInput(place, fmt::format("{} bytes", stat.size), "{} (damaged archive)", done);
     done += static_cast<size_t>(got);
   }
+  // The checksum is compared where the end is read.
+  char beyond = 0;
+  if (zip_fread(file.get(), &beyond, 1) != 0)
+    throw InputError(place, "an undamaged entry", zip_file_strerror(file.get()));
   return content;
+}
+
+/// NPZ files and checkpoints are stored or deflated. Deflate shrinks to 1/1032 at best, so an
+/// entry that claims more lies about its size.
+void checkEntry(const zip_stat_t& stat, size_t allowed, const Place& place) {
+  constexpr zip_uint64_t kNeeded =
+      ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_COMP_METHOD;
+  if ((stat.valid & kNeeded) != kNeeded) throw InputError(place, "an entry with a size", "none");
+  if (stat.comp_method != ZIP_CM_STORE && stat.comp_method != ZIP_CM_DEFLATE)
+    throwInput(place, "a stored or deflated entry", "compression method {}", stat.comp_method);
+  if (stat.size > allowed)
+    throwInput(place, fmt::format("at most {} bytes unpacked", allowed), "{}", stat.size);
+  if (stat.size / 1032 > stat.comp_size + 1)
+    throwInput(place, fmt::format("at most {} bytes", (stat.comp_size + 2) * 1032), "{} (damaged)",
+               stat.size);
 }
 
 }  // namespace
@@ -58,8 +77,7 @@ std::map<std::string, std::string> parseArchive(std::string_view bytes, const st
     const Place place{.path = origin, .item = fmt::format("entry {}", i)};
     if (zip_stat_index(archive.get(), static_cast<zip_uint64_t>(i), 0, &stat) != 0)
       throw InputError(place, "an entry", zip_strerror(archive.get()));
-    if (stat.size > maxBytes - total)
-      throwInput(place, fmt::format("at most {} bytes unpacked", maxBytes), "more");
+    checkEntry(stat, maxBytes - total, place);
     total += stat.size;
     out[stat.name] = readEntry(archive.get(), static_cast<zip_uint64_t>(i), stat, place);
   }
@@ -82,12 +100,14 @@ void writeArchive(const std::filesystem::path& path,
   for (const auto& [name, content] : files) {
     zip_source_t* source = zip_source_buffer(archive.get(), content.data(), content.size(), 0);
     const zip_int64_t index = zip_file_add(archive.get(), name.c_str(), source, ZIP_FL_ENC_UTF_8);
-    if (index < 0)
+    if (index < 0) {
+      zip_source_free(source);
       throw FileError(fmt::format("{}: {}", path.string(), zip_strerror(archive.get())));
+    }
     zip_set_file_compression(archive.get(), static_cast<zip_uint64_t>(index),
                              compress ? ZIP_CM_DEFLATE : ZIP_CM_STORE, 0);
-    // A fixed date: the same content gives the same file.
-    zip_file_set_mtime(archive.get(), static_cast<zip_uint64_t>(index), 315532800, 0);
+    // A fixed local date (1980-01-01): the same content gives the same file in every time zone.
+    zip_file_set_dostime(archive.get(), static_cast<zip_uint64_t>(index), 0, 0x21, 0);
   }
   if (zip_close(archive.get()) != 0)
     throw FileError(fmt::format("{}: {}", path.string(), zip_strerror(archive.get())));

@@ -1,11 +1,13 @@
 #include "base/atomic_file.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <unistd.h>
 
@@ -72,21 +74,34 @@ std::string readFile(const fs::path& path, size_t maxBytes) {
   std::error_code ec;
   if (fs::is_directory(path, ec))
     throw FileError(fmt::format("{}: expected a file, found a folder", path.string()));
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  std::ifstream in(path, std::ios::binary);
   if (!in) throw FileError(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
-  const auto size = static_cast<size_t>(in.tellg());
-  if (size > maxBytes)
+  const uintmax_t size = fs::file_size(path, ec);
+  if (!ec && size > maxBytes)
     throw FileError(
         fmt::format("{}: expected at most {} bytes, found {}", path.string(), maxBytes, size));
-  std::string content(size, '\0');
-  in.seekg(0);
-  in.read(content.data(), static_cast<std::streamsize>(size));
-  if (!in && size > 0) throw FileError(fmt::format("{}: cannot read to its end", path.string()));
+  // Grows with what is there: pipes have no size.
+  std::string content;
+  size_t next = ec || size == 0 ? size_t{1} << 16 : static_cast<size_t>(size) + 1;
+  while (in && content.size() <= maxBytes) {
+    const size_t done = content.size();
+    content.resize(done + std::min(next, maxBytes - done + 1));
+    in.read(content.data() + done, static_cast<std::streamsize>(content.size() - done));
+    content.resize(done + static_cast<size_t>(in.gcount()));
+    next = std::max(next, size_t{1} << 16);
+  }
+  if (in.bad()) throw FileError(fmt::format("{}: cannot read to its end", path.string()));
+  if (content.size() > maxBytes)
+    throw FileError(
+        fmt::format("{}: expected at most {} bytes, found more", path.string(), maxBytes));
   return content;
 }
 
 StagedFolder::StagedFolder(fs::path target) : m_target(std::move(target)) {
   if (m_target.filename().empty()) m_target = m_target.parent_path();
+  std::error_code ec;
+  if (fs::exists(m_target, ec) && !fs::is_directory(m_target, ec))
+    throw FileError(fmt::format("{}: expected a folder, found a file", m_target.string()));
   createFolder(m_target.parent_path());
   m_staging = besideName(m_target);
   createFolder(m_staging);
@@ -98,14 +113,20 @@ StagedFolder::~StagedFolder() {
 }
 
 void StagedFolder::commit() {
-  if (!fs::exists(m_target)) {
+  std::error_code ec;
+  if (!fs::exists(m_target, ec)) {
     renameOver(m_staging, m_target);
     return;
   }
   createFolder(m_target);
-  for (const auto& entry : fs::recursive_directory_iterator(m_staging)) {
-    const fs::path to = m_target / fs::relative(entry.path(), m_staging);
-    if (entry.is_directory())
+  // Listed first: what a folder lists while files leave it is unspecified.
+  std::vector<fs::directory_entry> entries;
+  for (fs::recursive_directory_iterator it(m_staging, ec), end; !ec && it != end; it.increment(ec))
+    entries.push_back(*it);
+  if (ec) throw FileError(fmt::format("{}: cannot list: {}", m_staging.string(), ec.message()));
+  for (const auto& entry : entries) {
+    const fs::path to = m_target / entry.path().lexically_relative(m_staging);
+    if (entry.is_directory(ec))
       createFolder(to);
     else
       renameOver(entry.path(), to);

@@ -12,7 +12,7 @@ Progress::Progress(Listener listener, std::stop_token stop)
 
 void Progress::report(double fraction, std::string_view message) {
   const std::lock_guard lock(m_mutex);
-  m_fraction = std::clamp(fraction, m_fraction, 1.0);
+  if (fraction > m_fraction) m_fraction = std::min(fraction, 1.0);  // false for NaN
   if (m_listener) m_listener(m_fraction, message);
 }
 
@@ -49,6 +49,9 @@ void Job::run(const Work& work, std::stop_token stop) {
   } catch (const std::exception& e) {
     end = State::Failed;
     error = e.what();
+  } catch (...) {
+    end = State::Failed;
+    error = "an error of unknown kind";
   }
   const std::lock_guard lock(m_mutex);
   m_status.state = end;

@@ -6,14 +6,48 @@
 
 namespace marey {
 
+namespace {
+
+/// Copying and writing a value recurses, so that a file of brackets could exhaust the stack.
+constexpr int kMaxDepth = 200;
+
+int64_t lineOf(std::string_view text, size_t position) {
+  return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(position), '\n');
+}
+
+void checkDepth(std::string_view text, const std::string& origin) {
+  int depth = 0;
+  bool quoted = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') quoted = !quoted;
+    if (quoted && c == '\\') ++i;
+    if (quoted) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kMaxDepth)
+      throw InputError({.path = origin, .line = lineOf(text, i)},
+                       fmt::format("JSON of at most {} levels", kMaxDepth), "more");
+  }
+}
+
+}  // namespace
+
 Json parseJson(std::string_view text, const std::string& origin) {
+  checkDepth(text, origin);
   try {
     return Json::parse(text);
   } catch (const nlohmann::json::parse_error& e) {
-    const size_t end = std::min(e.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(end), '\n');
-    throw InputError({.path = origin, .line = line}, "JSON", e.what());
+    // `byte` is the 1-based position of the character that was read last.
+    const size_t position = std::min(e.byte > 0 ? e.byte - 1 : 0, text.size());
+    throw InputError({.path = origin, .line = lineOf(text, position)}, "JSON", e.what());
+  } catch (const nlohmann::json::exception& e) {  // a number beyond the range of double
+    throw InputError({.path = origin}, "JSON", e.what());
   }
+}
+
+std::string jsonText(const Json& value, int indent) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 Json readJson(const std::filesystem::path& path) {
@@ -21,7 +55,7 @@ Json readJson(const std::filesystem::path& path) {
 }
 
 void writeJson(const std::filesystem::path& path, const Json& value) {
-  writeFileAtomically(path, value.dump(2) + "\n");
+  writeFileAtomically(path, jsonText(value, 2) + "\n");
 }
 
 JsonReader::JsonReader(const Json& value, std::string origin, std::string prefix)

@@ -17,6 +17,9 @@ using Json = nlohmann::ordered_json;
 Json readJson(const std::filesystem::path& path);
 /// `origin` names the text in errors.
 Json parseJson(std::string_view text, const std::string& origin);
+/// The value as text on one line, or indented. Bytes that are no UTF-8 (names out of old motion
+/// files) become U+FFFD.
+std::string jsonText(const Json& value, int indent = -1);
 /// Indented, written atomically.
 void writeJson(const std::filesystem::path& path, const Json& value);
 
@@ -56,20 +59,43 @@ class JsonReader {
 
  private:
   template <typename T>
+  struct IsVector : std::false_type {};
+  template <typename T>
+  struct IsVector<std::vector<T>> : std::true_type {};
+
+  static std::string shown(const Json& value) { return jsonText(value).substr(0, 80); }
+  template <typename T>
+  static bool fits(const Json& value) {
+    if (value.is_number_unsigned()) return std::in_range<T>(value.get<uint64_t>());
+    return value.is_number_integer() && std::in_range<T>(value.get<int64_t>());
+  }
+  template <typename T>
   T convert(const std::string& key) const {
-    const Json& value = m_value.at(key);
+    return convertValue<T>(m_value.at(key), key);
+  }
+  template <typename T>
+  T convertValue(const Json& value, const std::string& key) const {
+    if constexpr (IsVector<T>::value) {
+      if (!value.is_array()) throw InputError(place(key), "a list", shown(value));
+      T out;
+      for (const Json& item : value) out.push_back(convertValue<typename T::value_type>(item, key));
+      return out;
+    } else if constexpr (std::is_same_v<T, bool>) {
+      if (!value.is_boolean()) throw InputError(place(key), "true or false", shown(value));
+    } else if constexpr (std::is_integral_v<T>) {
+      if (!fits<T>(value))
+        throw InputError(place(key),
+                         fmt::format("a whole number from {} to {}", std::numeric_limits<T>::min(),
+                                     std::numeric_limits<T>::max()),
+                         shown(value));
+    } else if constexpr (std::is_floating_point_v<T>) {
+      if (!value.is_number() || !std::isfinite(static_cast<T>(value.get<double>())))
+        throw InputError(place(key), "a number", shown(value));
+    }
     try {
-      if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
-        if (!value.is_number_integer())
-          throw InputError(place(key), "a whole number", value.dump());
-      } else if constexpr (std::is_floating_point_v<T>) {
-        if (!value.is_number()) throw InputError(place(key), "a number", value.dump());
-      } else if constexpr (std::is_same_v<T, bool>) {
-        if (!value.is_boolean()) throw InputError(place(key), "true or false", value.dump());
-      }
       return value.get<T>();
-    } catch (const nlohmann::json::exception& e) {
-      throw InputError(place(key), "a value of another type", value.dump().substr(0, 80));
+    } catch (const nlohmann::json::exception&) {
+      throw InputError(place(key), "a value of another type", shown(value));
     }
   }
 

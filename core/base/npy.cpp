@@ -1,7 +1,6 @@
 #include "base/npy.h"
 
 #include <cstring>
-#include <regex>
 
 #include "base/archive.h"
 #include "base/atomic_file.h"
@@ -17,21 +16,36 @@ struct Header {
   std::vector<int64_t> shape;
 };
 
-std::string matchOne(const std::string& text, const char* pattern, const Place& place,
-                     const char* what) {
-  std::smatch match;
-  if (!std::regex_search(text, match, std::regex(pattern)))
-    throw InputError(place, what, text.substr(0, 120));
-  return match[1];
+/// What follows "'key':" in a header, without leading blanks.
+std::string_view valueOf(std::string_view header, std::string_view key, const Place& place) {
+  const std::string wanted = fmt::format("'{}'", key);
+  size_t at = header.find(wanted);
+  if (at != std::string_view::npos) at = header.find_first_not_of(' ', at + wanted.size());
+  if (at == std::string_view::npos || header[at] != ':')
+    throw InputError(place, wanted + " in the NPY header", "none");
+  at = header.find_first_not_of(' ', at + 1);
+  return at == std::string_view::npos ? std::string_view() : header.substr(at);
 }
 
-Header parseHeader(const std::string& text, const Place& place) {
+/// The text between two characters at the start of `value`.
+std::string between(std::string_view value, char open, char close, const char* what,
+                    const Place& place) {
+  const size_t end = value.find(close, 1);
+  if (value.empty() || value[0] != open || end == std::string_view::npos)
+    throw InputError(place, what, fmt::format("'{}'", value.substr(0, 60)));
+  return std::string(value.substr(1, end - 1));
+}
+
+Header parseHeader(std::string_view text, const Place& place) {
   Header out;
-  out.descr =
-      matchOne(text, R"('descr':\s*'([^']*)')", place, "an NPY header with a plain 'descr'");
-  out.fortran =
-      matchOne(text, R"('fortran_order':\s*(True|False))", place, "'fortran_order'") == "True";
-  const std::string shape = matchOne(text, R"('shape':\s*\(([0-9L, ]*)\))", place, "'shape'");
+  out.descr = between(valueOf(text, "descr", place), '\'', '\'', "a plain number type", place);
+  const std::string_view order = valueOf(text, "fortran_order", place);
+  out.fortran = order.starts_with("True");
+  if (!out.fortran && !order.starts_with("False"))
+    throw InputError(place, "'fortran_order' True or False", "another value");
+  const std::string shape = between(valueOf(text, "shape", place), '(', ')', "a shape", place);
+  if (shape.find_first_not_of("0123456789L, ") != std::string::npos)
+    throw InputError(place, "a shape of whole numbers", shape.substr(0, 60));
   uint64_t count = 1;
   for (size_t i = 0; i < shape.size();) {
     if (shape[i] < '0' || shape[i] > '9') {
@@ -41,10 +55,11 @@ Header parseHeader(const std::string& text, const Place& place) {
     uint64_t value = 0;
     for (; i < shape.size() && shape[i] >= '0' && shape[i] <= '9'; ++i) {
       value = value * 10 + static_cast<uint64_t>(shape[i] - '0');
-      if (value > (uint64_t{1} << 40)) throw InputError(place, "a sensible shape", shape);
+      if (value > (uint64_t{1} << 40))
+        throw InputError(place, "a sensible shape", shape.substr(0, 60));
     }
     if (value > 0 && count > (uint64_t{1} << 40) / value)
-      throw InputError(place, "a sensible shape", shape);
+      throw InputError(place, "a sensible shape", shape.substr(0, 60));
     count *= value;
     out.shape.push_back(static_cast<int64_t>(value));
   }
@@ -112,7 +127,7 @@ Tensor parseNpy(std::string_view bytes, const std::string& origin) {
   const size_t start = 8 + lengthBytes + length;
   if (length > (1u << 20) || bytes.size() < start)
     throw InputError(place, "an NPY header", "a cut file");
-  const Header header = parseHeader(std::string(bytes.substr(8 + lengthBytes, length)), place);
+  const Header header = parseHeader(bytes.substr(8 + lengthBytes, length), place);
   Tensor out{.dtype = dtypeOf(header.descr, place), .shape = header.shape, .bytes = {}};
   const size_t want = static_cast<size_t>(out.count()) * byteSize(out.dtype);
   if (bytes.size() - start < want)

@@ -7,9 +7,9 @@ namespace marey {
 namespace {
 
 std::array<uint32_t, 4> block(const RandomKey& key, uint32_t index) {
-  // Stage and index share a word: 2^24 blocks (2^26 numbers) per (seed, sample, frame, stage).
+  // Stage and the low bits of the index share a word; the high bits have one of their own.
   const uint32_t word = (static_cast<uint32_t>(key.stage) << 24) | (index & 0xFFFFFFu);
-  return philox4x32({word, key.frame, key.sample, 0u},
+  return philox4x32({word, key.frame, key.sample, index >> 24},
                     {static_cast<uint32_t>(key.seed), static_cast<uint32_t>(key.seed >> 32)});
 }
 
@@ -62,6 +62,23 @@ double uniformAt(const RandomKey& key, uint32_t index) {
 
 double normalAt(const RandomKey& key, uint32_t index) {
   return normalBlock(key, index / 4)[index % 4];
+}
+
+double chiSquared(const RandomKey& key, double df) {
+  // Gamma(shape) by rejection; shapes below 1 are raised by 1 and corrected with a power.
+  const double shape = df / 2.0;
+  const double d = (shape < 1.0 ? shape + 1.0 : shape) - 1.0 / 3.0;
+  const double c = 1.0 / std::sqrt(9.0 * d);
+  for (uint32_t attempt = 0;; ++attempt) {
+    // Blocks of 8 numbers per attempt: two for the normal, the rest for uniforms.
+    const double x = normalAt(key, 8 * attempt);
+    const double v = std::pow(1.0 + c * x, 3.0);
+    const double u = 1.0 - uniformAt(key, 8 * attempt + 4);
+    if (v <= 0.0 || std::log(u) >= 0.5 * x * x + d - d * v + d * std::log(v)) continue;
+    const double boost =
+        shape < 1.0 ? std::pow(1.0 - uniformAt(key, 8 * attempt + 5), 1.0 / shape) : 1.0;
+    return 2.0 * d * v * boost;
+  }
 }
 
 }  // namespace marey

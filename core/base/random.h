@@ -40,5 +40,8 @@ void fillUniform(const RandomKey& key, std::span<double> out);
 double uniformAt(const RandomKey& key, uint32_t index);
 /// One standard normal value: number `index` of the stream.
 double normalAt(const RandomKey& key, uint32_t index);
+/// One chi-squared value with df > 0 degrees of freedom (Marsaglia and Tsang 2000); the stream
+/// of the key is used up by it.
+double chiSquared(const RandomKey& key, double df);
 
 }  // namespace marey

@@ -55,13 +55,23 @@ uint16_t floatToHalf(float value) {
   return sign | static_cast<uint16_t>(rounded >> 13);
 }
 
+/// A float beyond the range of an integer type has no value there.
+template <typename To, typename From>
+To cast(From value) {
+  if constexpr (std::is_floating_point_v<From> && std::is_integral_v<To>) {
+    if (!(value >= static_cast<From>(-0x1p63) && value < static_cast<From>(0x1p63)))
+      throw NumericError(fmt::format("expected a whole number of 64 bits, found {}", value));
+  }
+  return static_cast<To>(value);
+}
+
 template <typename From, typename To>
 std::vector<To> convert(const Tensor& t) {
   std::vector<To> out(static_cast<size_t>(t.count()));
   for (size_t i = 0; i < out.size(); ++i) {
     From value;
     std::memcpy(&value, t.bytes.data() + i * sizeof(From), sizeof(From));
-    out[i] = static_cast<To>(value);
+    out[i] = cast<To>(value);
   }
   return out;
 }
@@ -85,7 +95,7 @@ std::vector<To> convertAny(const Tensor& t) {
   const auto halves = convert<uint16_t, uint16_t>(t);
   std::vector<To> out(halves.size());
   std::transform(halves.begin(), halves.end(), out.begin(),
-                 [](uint16_t h) { return static_cast<To>(halfToFloat(h)); });
+                 [](uint16_t h) { return cast<To>(halfToFloat(h)); });
   return out;
 }
 
@@ -201,13 +211,21 @@ TensorFile parseTensorFile(std::string_view bytes, const std::string& origin) {
   if (!header.is_object())
     throw InputError({.path = origin}, "a JSON object as header", header.type_name());
   TensorFile out;
+  const std::string_view data = bytes.substr(8 + headerSize);
+  size_t described = 0;
   for (const auto& [key, entry] : header.items()) {
     if (key != "__metadata__") {
-      out.tensors.emplace(key, parseTensor(key, entry, bytes.substr(8 + headerSize), origin));
+      Tensor tensor = parseTensor(key, entry, data, origin);
+      described += tensor.bytes.size();
+      if (described > data.size()) break;  // overlapping: could unfold without bound
+      out.tensors.emplace(key, std::move(tensor));
     } else if (entry.is_object() && entry.contains("marey") && entry["marey"].is_string()) {
       out.metadata = parseJson(entry["marey"].get<std::string>(), origin + ", metadata");
     }
   }
+  if (described != data.size())
+    throwInput({.path = origin}, fmt::format("tensors that fill {} bytes", data.size()), "{}{}",
+               described > data.size() ? "more than " : "", std::min(described, data.size()));
   return out;
 }
 
@@ -217,7 +235,7 @@ TensorFile readTensorFile(const std::filesystem::path& path) {
 
 std::string serialise(const TensorFile& file) {
   Json header = Json::object();
-  header["__metadata__"] = {{"format", "marey"}, {"marey", file.metadata.dump()}};
+  header["__metadata__"] = {{"format", "marey"}, {"marey", jsonText(file.metadata)}};
   uint64_t offset = 0;
   for (const auto& [key, tensor] : file.tensors) {
     header[key] = {{"dtype", name(tensor.dtype)},
@@ -225,7 +243,7 @@ std::string serialise(const TensorFile& file) {
                    {"data_offsets", {offset, offset + tensor.bytes.size()}}};
     offset += tensor.bytes.size();
   }
-  std::string text = header.dump();
+  std::string text = jsonText(header);
   text.resize((text.size() + 7) / 8 * 8, ' ');
   const uint64_t size = text.size();
   std::string out(reinterpret_cast<const char*>(&size), 8);

@@ -10,19 +10,22 @@
 
 namespace marey {
 
-/// A point of a path file. Between way-points the path is a Catmull-Rom (centripetal) spline.
+/// A point of a path file. Between way-points the path is a Catmull-Rom (centripetal) spline; a
+/// way-point without time is reached at the latest speed given before it (1.2 m/s where none is).
 struct WayPoint {
-  double x = 0.0, z = 0.0;         ///< metres
-  std::optional<double> timeS;     ///< when to be there; or
-  std::optional<double> speedMS;   ///< how fast to leave it
-  std::optional<double> facing;    ///< heading in radians; default: along the path
+  double x = 0.0, z = 0.0;        ///< metres
+  std::optional<double> timeS;    ///< when to be there; or
+  std::optional<double> speedMS;  ///< how fast to leave it
+  std::optional<double> facing;   ///< heading in radians; default: along the path
 };
 
 /// Root frames along way-points at `fps`. Throws InputError (naming `origin`) for fewer than two
 /// way-points, times that do not rise, or speeds that are not positive.
-std::vector<RootFrame> samplePath(const std::vector<WayPoint>& points, double fps, const std::string& origin);
+std::vector<RootFrame> samplePath(const std::vector<WayPoint>& points, double fps,
+                                  const std::string& origin);
 
-/// A path file: {"waypoints": [{"x","z","time"|"speed","facing_deg"}...], "facing": "path"|"fixed"}.
+/// A path file: {"waypoints": [{"x","z","time"|"speed","facing_deg"}...], "facing":
+/// "path"|"fixed"}.
 std::vector<WayPoint> readPathFile(const std::filesystem::path& file);
 
 struct PathPreset {
@@ -36,6 +39,7 @@ const std::vector<PathPreset>& pathPresets();
 /// Root frames of a preset for `seconds` at `fps`, from the origin facing +Z; `scale` multiplies
 /// its speed (1 for a human; 0.6 for a dog).
 /// Throws UsageError naming the presets when there is none of that name.
-std::vector<RootFrame> presetPath(const std::string& name, double seconds, double fps, double scale = 1.0);
+std::vector<RootFrame> presetPath(const std::string& name, double seconds, double fps,
+                                  double scale = 1.0);
 
 }  // namespace marey

@@ -61,6 +61,8 @@ void checkEntry(const zip_stat_t& stat, size_t allowed, const Place& place) {
 
 std::map<std::string, std::string> parseArchive(std::string_view bytes, const std::string& origin,
                                                 size_t maxBytes) {
+  // libzip takes nothing at all for an archive without entries.
+  if (bytes.empty()) throw InputError({.path = origin}, "a zip archive", "an empty file");
   ZipErrorText error;
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error.error);
   if (source == nullptr) throw InputError({.path = origin}, "a zip archive", error.text());

@@ -15,7 +15,9 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 add_library(marey_settings INTERFACE)
-target_compile_options(marey_settings INTERFACE -Wall -Wextra)
+target_compile_options(marey_settings INTERFACE -Wall -Wextra -Wno-missing-field-initializers
+                       # A false alarm of GCC 12 on std::string (GCC bug 105329).
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(MAREY_WERROR)
   target_compile_options(marey_settings INTERFACE -Werror)
 endif()

@@ -1,0 +1,129 @@
+#include <cmath>
+#include <numeric>
+
+#include "base/hash.h"
+#include "model/motion_model.h"
+
+namespace marey {
+namespace {
+
+Tensor vectorTensor(const std::vector<float>& values) {
+  return Tensor::fromFloats({static_cast<int64_t>(values.size())}, values.data());
+}
+
+std::vector<float> loadVector(const TensorFile& file, const std::string& key, int64_t size,
+                              const std::string& origin, bool positive) {
+  auto out = file.get(key, {size}, origin).toFloats();
+  for (const float v : out)
+    if (!std::isfinite(v) || (positive && v <= 0.f))
+      throwInput({.path = origin, .item = "tensor '" + key + "'"},
+                 positive ? "finite values above zero" : "finite values", "{}", v);
+  return out;
+}
+
+}  // namespace
+
+double Standardiser::logDetPerFrame() const {
+  return std::accumulate(poseStd.begin(), poseStd.end(), 0.0, [](double sum, float s) {
+    return sum - std::log(static_cast<double>(s));
+  });
+}
+
+const ModelFamily& familyNamed(const std::string& name, std::span<const ModelFamily> families,
+                               const std::string& origin) {
+  std::string known;
+  for (const auto& family : families) {
+    if (family.name == name) return family;
+    known += (known.empty() ? "" : ", ") + family.name;
+  }
+  throw InputError({.path = origin, .item = "key 'family'"}, "one of " + known, "'" + name + "'");
+}
+
+std::unique_ptr<MotionModel> loadModel(const std::string& path,
+                                       std::span<const ModelFamily> families) {
+  const TensorFile file = readTensorFile(path);
+  JsonReader reader(file.metadata, path);
+  if (reader.optional<std::string>("kind", "") != "model")
+    throw InputError({.path = path}, "a Marey model",
+                     "a file of kind '" + reader.optional<std::string>("kind", "unknown") + "'");
+  return familyNamed(reader.required<std::string>("family"), families, path).load(file, path);
+}
+
+Json toJson(const FeatureSpec& spec) {
+  return {{"layout", spec.layout},
+          {"fps", spec.fps},
+          {"root_sigma_s", spec.rootSigmaS},
+          {"facing_sigma_s", spec.facingSigmaS}};
+}
+
+FeatureSpec featureSpecFromJson(const Json& value, const std::string& origin) {
+  JsonReader reader(value, origin, "features.");
+  FeatureSpec out;
+  out.layout = reader.required<std::string>("layout");
+  out.fps = reader.required<double>("fps");
+  out.rootSigmaS = reader.required<double>("root_sigma_s");
+  out.facingSigmaS = reader.required<double>("facing_sigma_s");
+  reader.finish();
+  if (!(out.fps > 0.0)) throwInput(reader.place("fps"), "a positive rate", "{}", out.fps);
+  return out;
+}
+
+Json toJson(const Skeleton& skeleton) {
+  Json offsets = Json::array();
+  for (const auto& o : skeleton.offsets) offsets.push_back({o.x(), o.y(), o.z()});
+  return {{"names", skeleton.names}, {"parents", skeleton.parents}, {"offsets_m", offsets}};
+}
+
+std::shared_ptr<const Skeleton> skeletonFromJson(const Json& value, const std::string& origin) {
+  JsonReader reader(value, origin, "skeleton.");
+  auto out = std::make_shared<Skeleton>();
+  out->names = reader.required<std::vector<std::string>>("names");
+  out->parents = reader.required<std::vector<int>>("parents");
+  for (const auto& o : reader.required<std::vector<std::vector<float>>>("offsets_m")) {
+    if (o.size() != 3) throwInput(reader.place("offsets_m"), "3 values per joint", "{}", o.size());
+    out->offsets.emplace_back(o[0], o[1], o[2]);
+  }
+  validate(*out, origin);
+  return out;
+}
+
+void storeCommon(const ModelInfo& info, TensorFile& file) {
+  file.metadata["kind"] = "model";
+  file.metadata["family"] = info.family;
+  file.metadata["variant"] = info.variant;
+  file.metadata["pose_dim"] = info.poseDim;
+  file.metadata["control_dim"] = info.controlDim;
+  file.metadata["config"] = info.config;
+  file.metadata["features"] = toJson(info.features);
+  file.metadata["provenance"] = info.provenance;
+  if (info.skeleton) file.metadata["skeleton"] = toJson(*info.skeleton);
+  if (info.standardiser.empty()) return;
+  file.tensors["standardiser/pose_mean"] = vectorTensor(info.standardiser.poseMean);
+  file.tensors["standardiser/pose_std"] = vectorTensor(info.standardiser.poseStd);
+  file.tensors["standardiser/control_mean"] = vectorTensor(info.standardiser.controlMean);
+  file.tensors["standardiser/control_std"] = vectorTensor(info.standardiser.controlStd);
+}
+
+ModelInfo loadCommon(const TensorFile& file, const std::string& origin) {
+  JsonReader reader(file.metadata, origin);
+  ModelInfo out;
+  out.family = reader.required<std::string>("family");
+  out.variant = reader.optional<std::string>("variant", "");
+  out.poseDim = reader.required<int>("pose_dim");
+  out.controlDim = reader.required<int>("control_dim");
+  out.config = reader.raw("config");
+  out.features = featureSpecFromJson(reader.raw("features"), origin);
+  if (reader.has("provenance")) out.provenance = reader.raw("provenance");
+  if (reader.has("skeleton")) out.skeleton = skeletonFromJson(reader.raw("skeleton"), origin);
+  if (file.tensors.contains("standardiser/pose_mean")) {
+    out.standardiser = {
+        loadVector(file, "standardiser/pose_mean", out.poseDim, origin, false),
+        loadVector(file, "standardiser/pose_std", out.poseDim, origin, true),
+        loadVector(file, "standardiser/control_mean", out.controlDim, origin, false),
+        loadVector(file, "standardiser/control_std", out.controlDim, origin, true)};
+  }
+  out.hash = contentHash(serialise(file));
+  return out;
+}
+
+}  // namespace marey

@@ -1,0 +1,117 @@
+// What every family of generative motion models offers to the sampler, the scorer, the
+// command line and the window. No libtorch type appears here.
+#pragma once
+
+#include <any>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/tensor_file.h"
+#include "motion/features.h"
+
+namespace marey {
+
+/// Mean and standard deviation per dimension, fitted on the augmented training data.
+/// Empty: the model works on values that are already standardised.
+struct Standardiser {
+  std::vector<float> poseMean, poseStd;        ///< [D]
+  std::vector<float> controlMean, controlStd;  ///< [C]
+
+  bool empty() const { return poseMean.empty(); }
+  /// Added to a log-density of standardised poses it gives that of poses in metres (per frame).
+  double logDetPerFrame() const;
+};
+
+struct ModelInfo {
+  std::string family;   ///< "moglow", ...
+  std::string variant;  ///< free name of the configuration, "moglow-small"
+  int poseDim = 0, controlDim = 0;
+  int context = 0;    ///< tau: past frames that the model sees
+  int lookahead = 0;  ///< future control frames that it sees
+  int64_t parameters = 0;
+  FeatureSpec features;
+  std::shared_ptr<const Skeleton> skeleton;  ///< null for models imported without one
+  Standardiser standardiser;
+  Json config;       ///< hyper-parameters as used
+  Json provenance;   ///< data set, steps, metrics, command
+  std::string hash;  ///< content hash of the weights
+};
+
+/// Recurrent state and pose history of a batch of rollouts. A value: copying it forks the
+/// rollout. What it holds belongs to the family that made it.
+struct RolloutState {
+  std::any value;
+};
+
+/// Latents and log-likelihoods of a sequence.
+struct SequenceScore {
+  Matrix latent;                   ///< [T, D]
+  std::vector<double> loglikNats;  ///< [T], density of standardised poses
+};
+
+/// Thread rule: const functions may run at the same time on different states.
+class MotionModel {
+ public:
+  virtual ~MotionModel() = default;
+  virtual const ModelInfo& info() const = 0;
+
+  /// Rollouts whose history is `history` ([B, context * D], oldest frame first, in metres); an
+  /// empty matrix stands for the mean pose. Recurrent state is zero.
+  virtual RolloutState start(int batch, const Matrix& history) const = 0;
+  /// The next pose [B, D] in metres given latents [B, D] of the base distribution and controls
+  /// [B, (context + 1 + lookahead) * C], frames t - context .. t + lookahead of frame t.
+  virtual Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,
+                             const Matrix& latent) const = 0;
+  /// Advances over observed frames: poses [T, D] and controls [context + T + lookahead, C] of a
+  /// batch of one, continuing from `state`.
+  virtual SequenceScore observe(RolloutState& state, const Matrix& poses,
+                                const Matrix& controls) const = 0;
+  /// Degrees of freedom of a Student-t base; 0 for a standard normal.
+  virtual double baseDegreesOfFreedom() const = 0;
+  /// Weights, standardiser and configuration as they are stored.
+  virtual TensorFile save() const = 0;
+};
+
+class TrainableModel;  // model/trainable.h: libtorch inside
+
+/// A freshly made network, ready to be trained.
+struct Trainee {
+  std::shared_ptr<TrainableModel> net;
+  Json config;  ///< hyper-parameters as really used
+};
+
+/// A family in the explicit list of families (plugins/families.h).
+struct ModelFamily {
+  std::string name;
+  /// From a stored model. Strict: unknown, missing, mis-shaped or non-finite tensors throw
+  /// InputError naming `origin`.
+  std::function<std::unique_ptr<MotionModel>(const TensorFile&, const std::string& origin)> load;
+  /// Number of trainable parameters of a configuration, without building data.
+  std::function<ModelInfo(const Json& config, const std::string& origin)> describe;
+  /// Random weights for data of the given widths.
+  std::function<Trainee(const Json& modelConfig, const std::string& origin, int poseDim,
+                        int controlDim, uint64_t seed)>
+      makeTrainee;
+};
+
+/// Stored models carry "family" in their metadata. Throws InputError for unknown families.
+std::unique_ptr<MotionModel> loadModel(const std::string& path,
+                                       std::span<const ModelFamily> families);
+const ModelFamily& familyNamed(const std::string& name, std::span<const ModelFamily> families,
+                               const std::string& origin);
+
+/// Standardiser, features and skeleton inside stored models and data sets.
+void storeCommon(const ModelInfo& info, TensorFile& file);
+ModelInfo loadCommon(const TensorFile& file, const std::string& origin);
+
+Json toJson(const FeatureSpec& spec);
+FeatureSpec featureSpecFromJson(const Json& value, const std::string& origin);
+Json toJson(const Skeleton& skeleton);
+std::shared_ptr<const Skeleton> skeletonFromJson(const Json& value, const std::string& origin);
+
+}  // namespace marey

@@ -1,0 +1,49 @@
+// Many motions from one model along one path.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/job.h"
+#include "model/motion_model.h"
+
+namespace marey {
+
+struct SampleRequest {
+  /// Root frames at the model's rate, one per frame to keep.
+  std::vector<RootFrame> path;
+  int samples = 1;
+  uint64_t seed = 1;
+  double temperature = 1.0;
+  double warmUpS = 1.0;  ///< generated before the first kept frame and dropped
+  int firstSample = 0;   ///< number of the first sample: latents depend on it, not on the batch
+  /// Poses to start from, [context, D] in metres (the frames before the first kept one);
+  /// empty: the mean pose and a warm-up.
+  Matrix startPoses;
+  Matrix startControl;  ///< [context, C], with startPoses
+};
+
+/// Called with each frame's poses [samples, D] in metres.
+using FrameSink = std::function<void(int frame, const Matrix& poses)>;
+
+/// Latent of one sample at one frame: the same bits for any batch size and thread count.
+/// `frame` counts from the first generated frame, warm-up included.
+void drawLatent(uint64_t seed, int sample, int frame, double temperature, double df,
+                std::span<float> out);
+
+/// Memory is constant per sample: frames go to `sink` and are not kept.
+/// Throws InputError for an empty path or mismatched start poses, CancelledError,
+/// NumericError naming sample and frame when a pose is not finite.
+void sampleFrames(const MotionModel& model, const SampleRequest& request, const FrameSink& sink,
+                  Progress& progress);
+
+/// The motions as clips "sample_000", ... in world coordinates along the path.
+std::vector<Clip> sampleClips(const MotionModel& model, const SampleRequest& request,
+                              Progress& progress);
+
+/// The request for following a clip's own control; `startFromClip` takes its first frames as
+/// history (the path then begins after them). Throws InputError when the clip is shorter than
+/// the model's context needs or has another number of joints.
+SampleRequest requestAlongClip(const MotionModel& model, const Clip& clip, bool startFromClip);
+
+}  // namespace marey

@@ -1,0 +1,25 @@
+// Log-likelihood of every frame of a clip under a model.
+#pragma once
+
+#include <vector>
+
+#include "model/motion_model.h"
+
+namespace marey {
+
+struct ClipScore {
+  std::string name;
+  int firstFrame = 0;              ///< first scored frame, at the model's rate
+  std::vector<double> loglikNats;  ///< per frame, standardiser's log-determinant included
+                                   ///< unless asked for the standardised density
+  std::vector<double> latentNorm;  ///< |z| per frame
+  double bitsPerDimension = 0.0;   ///< mean, -log2 p / D
+  double meanNatsPerFrame() const;
+};
+
+/// The clip's first `context` frames are history; the others are scored from a running state
+/// that starts at zero. `standardised` leaves the standardiser's log-determinant out.
+/// Throws InputError when the clip is too short or of another skeleton.
+ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardised = false);
+
+}  // namespace marey

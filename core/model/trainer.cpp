@@ -1,0 +1,379 @@
+#include "model/trainer.h"
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include <ATen/CPUGeneratorImpl.h>
+
+#include "base/atomic_file.h"
+#include "base/hash.h"
+#include "model/batches.h"
+#include "model/training_state.h"
+#include "model/weights.h"
+
+namespace marey {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kNonFiniteLimit = 5;
+constexpr int kEvaluationFrames = 400;
+constexpr int64_t kEvaluationBatch = 16;
+constexpr const char* kLogHeader =
+    "step,seconds,learning_rate,train_bits_per_frame,valid_bits_per_frame,test_bits_per_frame,"
+    "gradient_norm,skipped\n";
+
+double rateAt(const TrainingConfig& c, int64_t step) {
+  const double t = static_cast<double>(step + 1), warm = static_cast<double>(c.warmupSteps);
+  if (c.schedule == "noam")
+    return std::max(c.minimumRate, c.learningRate * std::sqrt(warm) *
+                                       std::min(t * std::pow(warm, -1.5), 1.0 / std::sqrt(t)));
+  if (c.schedule == "cosine") {
+    if (t < warm) return c.learningRate * t / warm;
+    const double done =
+        std::min(1.0, (t - warm) / std::max(1.0, static_cast<double>(c.steps) - warm));
+    return c.minimumRate +
+           0.5 * (c.learningRate - c.minimumRate) * (1.0 + std::cos(std::numbers::pi * done));
+  }
+  return c.learningRate;
+}
+
+/// Mean log-density in nats of the real frames of a batch; counts them in `frames`.
+torch::Tensor meanLogLikelihood(TrainableModel& net, const TrainingBatch& batch,
+                                at::Generator* dropout, double* frames) {
+  const int64_t first = net.context(), ahead = net.lookahead();
+  const auto mask = batch.mask.narrow(1, first + ahead, batch.mask.size(1) - first - ahead);
+  const auto count = mask.sum().clamp_min(1.0);
+  if (frames != nullptr) *frames = mask.sum().item<double>();
+  return (net.logLikelihood(batch, dropout) * mask).sum() / count;
+}
+
+/// Name of the first parameter that (or whose gradient) is not finite; empty when all are.
+std::string nonFiniteLayer(const torch::nn::Module& net) {
+  for (const auto& item : net.named_parameters()) {
+    const auto bad = [](const torch::Tensor& t) {
+      return t.defined() && !t.isfinite().all().item<bool>();
+    };
+    if (bad(item.value())) return item.key() + " (its weights)";
+    if (bad(item.value().grad())) return item.key() + " (its gradient)";
+  }
+  return {};
+}
+
+/// Clips in place, by value and then by norm, as the authors do. Returns the norm before.
+double clipGradients(const torch::nn::Module& net, const TrainingConfig& c) {
+  std::vector<torch::Tensor> gradients;
+  double squared = 0.0;
+  for (const auto& p : net.parameters())
+    if (p.grad().defined()) gradients.push_back(p.grad());
+  std::vector<torch::Tensor> norms;
+  for (auto& g : gradients) norms.push_back(g.square().sum());
+  const double raw = std::sqrt(torch::stack(norms).sum().item<double>());
+  if (!std::isfinite(raw)) return raw;
+  norms.clear();
+  for (auto& g : gradients) {
+    if (c.clipValue > 0) g.clamp_(-c.clipValue, c.clipValue);
+    norms.push_back(g.square().sum());
+  }
+  squared = torch::stack(norms).sum().item<double>();
+  const double norm = std::sqrt(squared);
+  if (c.clipNorm > 0 && norm > c.clipNorm)
+    for (auto& g : gradients) g.mul_(c.clipNorm / norm);
+  return raw;
+}
+
+/// One training run: what it is given, what it carries, what it writes.
+class Run {
+ public:
+  Run(const DataSet& data, const TrainRequest& request, std::span<const ModelFamily> families)
+      : m_data(data),
+        m_request(request),
+        m_family(familyNamed(request.config.value("family", ""), families, request.configOrigin)),
+        m_config(trainingConfigFromJson(request.config.value("training", Json::object()),
+                                        request.configOrigin)),
+        m_device(request.device == "cuda" ? torch::kCUDA : torch::kCPU) {
+    if (request.device != "cpu" && request.device != "cuda")
+      throw UsageError("--device: expected cpu or cuda, found '" + request.device + "'");
+    if (request.device == "cuda" && !torch::cuda::is_available())
+      throw UsageError("--device cuda: this libtorch sees no CUDA device");
+    m_trainee = m_family.makeTrainee(request.config.at("model"), request.configOrigin,
+                                     data.poseDim(), data.controlDim(), request.seed);
+    makeBatches();
+  }
+
+  TrainResult execute(Progress& progress) {
+    begin();
+    const auto clock = std::chrono::steady_clock::now();
+    const double before = m_state.seconds;
+    const int64_t firstStep = m_state.step;
+    while (!ended() && !progress.cancelled()) {
+      trainStep();
+      m_state.seconds =
+          before + std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+      tell(progress,
+           static_cast<double>(m_state.step - firstStep) / (m_state.seconds - before + 1e-9));
+      if (m_state.step % m_config.checkpointEvery == 0) checkpoint();
+    }
+    if (m_sinceCheckpoint > 0 || m_state.step == firstStep) checkpoint();
+    progress.throwIfCancelled();
+    return {m_state.step,
+            m_lastTrainBits,
+            m_state.bestValid,
+            m_lastTestNats,
+            m_request.run / "best.marey",
+            m_request.run / "last.marey"};
+  }
+
+ private:
+  void makeBatches() {
+    const double fps = m_data.options.features.fps;
+    const int window = static_cast<int>(std::lround(m_config.windowS * fps));
+    const int hop = std::max(1, static_cast<int>(std::lround(m_config.hopS * fps)));
+    const auto scored = window - m_trainee.net->context() - m_trainee.net->lookahead();
+    if (scored < 1)
+      throwInput({.path = m_request.configOrigin, .item = "key 'training.window_s'"},
+                 fmt::format("windows longer than the model's context of {} frames",
+                             m_trainee.net->context() + m_trainee.net->lookahead()),
+                 "{} frames", window);
+    const auto [train, valid] = splitValidation(m_data.train, m_config.validationShare);
+    m_train.emplace(train, m_data.standardiser, window, hop, m_device);
+    const int context = static_cast<int>(m_trainee.net->context());
+    const int longHop = kEvaluationFrames;
+    if (!valid.empty())
+      m_valid.emplace(valid, m_data.standardiser, kEvaluationFrames + context, longHop, m_device);
+    if (!m_data.test.empty())
+      m_test.emplace(m_data.test, m_data.standardiser, kEvaluationFrames + context, longHop,
+                     m_device);
+  }
+
+  Json identity() const {
+    Json training = toJson(m_config);
+    training.erase("steps");  // a run may be prolonged
+    return {{"data", m_data.hash},
+            {"seed", m_request.seed},
+            {"training", training},
+            {"model", m_trainee.config}};
+  }
+
+  void begin() {
+    TrainableModel& net = *m_trainee.net;
+    const fs::path statePath = m_request.run / "state.marey";
+    const bool exists = fs::exists(statePath);
+    if (m_request.resume && !exists)
+      throw FileError(fmt::format("{}: nothing to resume", statePath.string()));
+    if (!m_request.resume && exists)
+      throw InputError({.path = m_request.run.string()}, "a new folder, or --resume", "a run");
+    net.to(m_device);
+    m_adam.emplace(net);
+    if (m_request.resume) {
+      m_state = loadState(statePath, net, *m_adam, identity());
+      m_facts = readJson(m_request.run / "config.json").value("facts", Json::object());
+      cutLog();
+      return;
+    }
+    if (m_request.init.empty()) {
+      m_facts = net.initialise(m_train->frames(net.context(), net.lookahead()));
+    } else {
+      loadWeights(net, readTensorFile(m_request.init), m_request.init.string());
+      m_facts = {{"initial_weights", m_request.init.filename().string()}};
+    }
+    if (m_config.ema > 0)
+      for (const auto& item : net.named_parameters())
+        m_state.average[item.key()] = item.value().detach().clone();
+    writeJson(m_request.run / "config.json", {{"config", m_request.config},
+                                              {"seed", m_request.seed},
+                                              {"facts", m_facts},
+                                              {"data", m_data.hash}});
+    writeFileAtomically(m_request.run / "log.csv", kLogHeader);
+  }
+
+  bool ended() const {
+    if (m_state.step >= m_request.steps.value_or(m_config.steps)) return true;
+    return m_request.minutes && m_state.seconds >= 60.0 * *m_request.minutes;
+  }
+
+  void trainStep() {
+    TrainableModel& net = *m_trainee.net;
+    net.train();
+    auto generator = at::detail::createCPUGenerator(m_request.seed * 0x9E3779B97F4A7C15ull +
+                                                    static_cast<uint64_t>(m_state.step));
+    const auto batch = m_train->forStep(m_request.seed, m_state.step, m_config.batch);
+    for (auto& p : net.parameters()) p.mutable_grad() = torch::Tensor();
+    const auto loss = -meanLogLikelihood(net, batch, &generator, nullptr);
+    const double value = loss.item<double>();
+    if (std::isfinite(value)) loss.backward();
+    const double norm = std::isfinite(value) ? clipGradients(net, m_config) : value;
+    if (!std::isfinite(value) || !std::isfinite(norm)) {
+      skip(net);
+    } else {
+      m_state.nonFinite = 0;
+      m_adam->step(rateAt(m_config, m_state.step), ++m_state.updates);
+      updateAverage(net);
+      m_lossSum += value;
+      m_normSum += norm;
+      ++m_lossCount;
+    }
+    ++m_state.step;
+    ++m_sinceCheckpoint;
+  }
+
+  void skip(const TrainableModel& net) {
+    ++m_skipped;
+    if (++m_state.nonFinite < kNonFiniteLimit) return;
+    const std::string layer = nonFiniteLayer(net);
+    throw NumericError(fmt::format(
+        "training: {} steps in a row gave a loss or gradient that is not finite; first bad layer: "
+        "{}. "
+        "The last checkpoint is kept; try a lower learning rate",
+        kNonFiniteLimit, layer.empty() ? "the loss itself (inputs out of range)" : layer));
+  }
+
+  void updateAverage(const TrainableModel& net) {
+    const torch::NoGradGuard guard;
+    // A short memory at first, so that the random start is forgotten.
+    const double decay = std::min(m_config.ema, (1.0 + static_cast<double>(m_state.updates)) /
+                                                    (10.0 + static_cast<double>(m_state.updates)));
+    if (!m_state.average.empty())
+      for (const auto& item : net.named_parameters())
+        m_state.average[item.key()].lerp_(item.value(), 1.0 - decay);
+  }
+
+  /// Bits per frame of standardised poses; NaN without data.
+  double evaluate(const std::optional<Batches>& batches) {
+    if (!batches) return std::nan("");
+    const c10::InferenceMode guard;
+    m_trainee.net->eval();
+    double sum = 0.0, frames = 0.0;
+    for (int64_t first = 0; first < batches->windowCount(); first += kEvaluationBatch) {
+      double count = 0.0;
+      const auto batch =
+          batches->inOrder(first, std::min(kEvaluationBatch, batches->windowCount() - first));
+      const double mean = meanLogLikelihood(*m_trainee.net, batch, nullptr, &count).item<double>();
+      if (count == 0.0) continue;
+      sum += mean * count;
+      frames += count;
+    }
+    return frames > 0.0 ? -sum / frames / std::numbers::ln2 : std::nan("");
+  }
+
+  void checkpoint() {
+    double valid = 0.0, test = 0.0;
+    std::string model;
+    {
+      const AveragedWeights averaged(*m_trainee.net, m_state);
+      valid = evaluate(m_valid);
+      test = evaluate(m_test);
+      model = serialise(exportModel(valid, test));
+    }
+    m_lastTrainBits = m_lossCount > 0 ? m_lossSum / m_lossCount / std::numbers::ln2 : std::nan("");
+    m_lastTestNats = -test * std::numbers::ln2 + m_data.standardiser.logDetPerFrame();
+    const double judged = std::isnan(valid) ? m_lastTrainBits : valid;
+    writeFileAtomically(m_request.run / "last.marey", model);
+    if (judged < m_state.bestValid) {
+      m_state.bestValid = judged;
+      writeFileAtomically(m_request.run / "best.marey", model);
+    }
+    const auto due = m_config.snapshotMinutes > 0
+                         ? static_cast<int64_t>(m_state.seconds / 60.0 / m_config.snapshotMinutes)
+                         : 0;
+    if (due > m_state.snapshots) {
+      m_state.snapshots = due;
+      writeFileAtomically(
+          m_request.run / "snapshots" / fmt::format("step_{:07}.marey", m_state.step), model);
+    }
+    appendLog(valid, test);
+    // Last: a run that is killed before this line goes on from the checkpoint before.
+    saveState(m_request.run / "state.marey", m_state, *m_trainee.net, *m_adam, identity());
+    m_lossSum = m_normSum = 0.0;
+    m_lossCount = m_skipped = 0;
+    m_sinceCheckpoint = 0;
+  }
+
+  TensorFile exportModel(double valid, double test) const {
+    ModelInfo info;
+    info.family = m_family.name;
+    info.variant = m_request.config.value("name", m_family.name);
+    info.poseDim = m_data.poseDim();
+    info.controlDim = m_data.controlDim();
+    info.config = m_trainee.config;
+    info.features = m_data.options.features;
+    info.skeleton = m_data.skeleton;
+    info.standardiser = m_data.standardiser;
+    info.provenance = {{"data", m_data.hash},
+                       {"training_clips", m_data.train.size()},
+                       {"seed", m_request.seed},
+                       {"steps", m_state.step},
+                       {"training_seconds", m_state.seconds},
+                       {"training", toJson(m_config)},
+                       {"facts", m_facts},
+                       {"command", m_request.command}};
+    const double shift = m_data.standardiser.logDetPerFrame();
+    if (!std::isnan(valid))
+      info.provenance["valid_nats_per_frame"] = -valid * std::numbers::ln2 + shift;
+    if (!std::isnan(test))
+      info.provenance["test_nats_per_frame"] = -test * std::numbers::ln2 + shift;
+    info.provenance["bone_lengths_m"] = m_data.boneLengthsM;
+    TensorFile file;
+    storeCommon(info, file);
+    storeWeights(*m_trainee.net, file);
+    return file;
+  }
+
+  void appendLog(double valid, double test) {
+    std::ofstream log(m_request.run / "log.csv", std::ios::app);
+    const double count = std::max<double>(1.0, static_cast<double>(m_lossCount));
+    log << fmt::format("{},{:.1f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", m_state.step,
+                       m_state.seconds, rateAt(m_config, m_state.step - 1), m_lastTrainBits, valid,
+                       test, m_normSum / count, m_skipped);
+    if (!log.flush()) throw FileError((m_request.run / "log.csv").string() + ": cannot write");
+  }
+
+  /// Drops rows of the log that a killed run wrote after its last state.
+  void cutLog() {
+    std::istringstream in(readFile(m_request.run / "log.csv"));
+    std::string line, kept = kLogHeader;
+    std::getline(in, line);
+    while (std::getline(in, line))
+      if (std::strtoll(line.c_str(), nullptr, 10) <= m_state.step) kept += line + "\n";
+    writeFileAtomically(m_request.run / "log.csv", kept);
+  }
+
+  void tell(Progress& progress, double rate) {
+    const double bySteps = static_cast<double>(m_state.step) /
+                           static_cast<double>(m_request.steps.value_or(m_config.steps));
+    const double byTime = m_request.minutes ? m_state.seconds / (60.0 * *m_request.minutes) : 0.0;
+    const double bits =
+        m_lossCount > 0 ? m_lossSum / m_lossCount / std::numbers::ln2 : std::nan("");
+    progress.report(std::min(1.0, std::max(bySteps, byTime)),
+                    fmt::format("step {}, {:.2f} steps/s, {:.1f} bits per frame (valid {:.1f})",
+                                m_state.step, rate, bits, m_state.bestValid));
+  }
+
+  const DataSet& m_data;
+  const TrainRequest& m_request;
+  const ModelFamily& m_family;
+  TrainingConfig m_config;
+  torch::Device m_device;
+  Trainee m_trainee;
+  std::optional<Batches> m_train, m_valid, m_test;
+  std::optional<Adam> m_adam;
+  TrainingState m_state;
+  Json m_facts = Json::object();
+  double m_lossSum = 0.0, m_normSum = 0.0;
+  int64_t m_lossCount = 0, m_skipped = 0, m_sinceCheckpoint = 0;
+  double m_lastTrainBits = 0.0, m_lastTestNats = 0.0;
+};
+
+}  // namespace
+
+TrainResult train(const DataSet& data, const TrainRequest& request,
+                  std::span<const ModelFamily> families, Progress& progress) {
+  if (!request.config.is_object() || !request.config.contains("model"))
+    throw InputError({.path = request.configOrigin},
+                     "an object with 'family', 'model' and 'training'", "something else");
+  return Run(data, request, families).execute(progress);
+}
+
+}  // namespace marey

@@ -1,0 +1,102 @@
+#include "model/training_state.h"
+
+#include <cmath>
+
+#include "model/weights.h"
+
+namespace marey {
+namespace {
+
+constexpr double kBeta1 = 0.9, kBeta2 = 0.999, kEpsilon = 1e-8;
+
+void restore(torch::Tensor& target, const TensorFile& file, const std::string& key,
+             const std::string& origin) {
+  target.copy_(fromTensor(file.get(key, target.sizes().vec(), origin)));
+}
+
+}  // namespace
+
+Adam::Adam(const torch::nn::Module& module) {
+  for (const auto& item : module.named_parameters())
+    slots[item.key()] = {item.value(), torch::zeros_like(item.value()),
+                         torch::zeros_like(item.value())};
+}
+
+void Adam::step(double rate, int64_t count) {
+  const torch::NoGradGuard guard;
+  const double correction1 = 1.0 - std::pow(kBeta1, static_cast<double>(count));
+  const double correction2 = 1.0 - std::pow(kBeta2, static_cast<double>(count));
+  for (auto& [name, slot] : slots) {
+    const auto& gradient = slot.parameter.grad();
+    if (!gradient.defined()) continue;
+    slot.mean.mul_(kBeta1).add_(gradient, 1.0 - kBeta1);
+    slot.square.mul_(kBeta2).addcmul_(gradient, gradient, 1.0 - kBeta2);
+    const auto denominator = (slot.square.sqrt() / std::sqrt(correction2)).add_(kEpsilon);
+    slot.parameter.addcdiv_(slot.mean, denominator, -rate / correction1);
+  }
+}
+
+void saveState(const std::filesystem::path& path, const TrainingState& state,
+               const torch::nn::Module& net, const Adam& adam, const Json& identity) {
+  TensorFile file;
+  file.metadata = {{"kind", "training-state"},    {"identity", identity},
+                   {"step", state.step},          {"updates", state.updates},
+                   {"seconds", state.seconds},    {"non_finite", state.nonFinite},
+                   {"snapshots", state.snapshots}};
+  if (std::isfinite(state.bestValid)) file.metadata["best_valid"] = state.bestValid;
+  storeWeights(net, file);
+  for (const auto& [name, slot] : adam.slots) {
+    file.tensors["adam_mean/" + name] = toTensor(slot.mean);
+    file.tensors["adam_square/" + name] = toTensor(slot.square);
+  }
+  for (const auto& [name, value] : state.average) file.tensors["average/" + name] = toTensor(value);
+  writeTensorFile(path, file);
+}
+
+TrainingState loadState(const std::filesystem::path& path, torch::nn::Module& net, Adam& adam,
+                        const Json& identity) {
+  const torch::NoGradGuard guard;
+  const std::string origin = path.string();
+  const TensorFile file = readTensorFile(path);
+  JsonReader reader(file.metadata, origin);
+  for (const auto& [key, value] : identity.items()) {
+    const Json& stored = reader.raw("identity");
+    if (!stored.contains(key) || stored[key] != value)
+      throw InputError({.path = origin, .item = key}, "the run that is resumed: " + value.dump(),
+                       stored.contains(key) ? stored[key].dump() : "none");
+  }
+  TrainingState out;
+  out.step = reader.required<int64_t>("step");
+  out.updates = reader.required<int64_t>("updates");
+  out.seconds = reader.required<double>("seconds");
+  out.nonFinite = reader.required<int>("non_finite");
+  out.snapshots = reader.required<int64_t>("snapshots");
+  out.bestValid = reader.optional("best_valid", out.bestValid);
+  loadWeights(net, file, origin);
+  for (auto& [name, slot] : adam.slots) {
+    restore(slot.mean, file, "adam_mean/" + name, origin);
+    restore(slot.square, file, "adam_square/" + name, origin);
+    if (!file.tensors.contains("average/" + name)) continue;
+    out.average[name] = torch::zeros_like(slot.parameter);
+    restore(out.average[name], file, "average/" + name, origin);
+  }
+  return out;
+}
+
+AveragedWeights::AveragedWeights(torch::nn::Module& net, const TrainingState& state) : m_net(net) {
+  const torch::NoGradGuard guard;
+  if (state.average.empty()) return;
+  for (auto& item : m_net.named_parameters()) {
+    m_own[item.key()] = item.value().clone();
+    item.value().copy_(state.average.at(item.key()));
+  }
+}
+
+AveragedWeights::~AveragedWeights() {
+  const torch::NoGradGuard guard;
+  for (auto& item : m_net.named_parameters())
+    if (const auto own = m_own.find(item.key()); own != m_own.end())
+      item.value().copy_(own->second);
+}
+
+}  // namespace marey

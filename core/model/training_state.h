@@ -1,0 +1,58 @@
+// Everything that a training run carries from step to step. Internal (libtorch types).
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "base/json.h"
+#include "model/trainable.h"
+
+namespace marey {
+
+/// Adam (Kingma and Ba 2015) over named parameters. Its own few lines rather than libtorch's
+/// optimiser, whose stored state changed its form between 1.13 and 2.x.
+class Adam {
+ public:
+  explicit Adam(const torch::nn::Module& module);
+  /// One step with the gradients in place; `count` is the number of this step, from 1.
+  void step(double rate, int64_t count);
+
+  struct Slot {
+    torch::Tensor parameter, mean, square;
+  };
+  std::map<std::string, Slot> slots;
+};
+
+struct TrainingState {
+  int64_t step = 0;      ///< steps done
+  int64_t updates = 0;   ///< steps that were not skipped
+  double seconds = 0.0;  ///< of training, earlier runs included
+  int nonFinite = 0;     ///< skipped steps in a row
+  double bestValid = std::numeric_limits<double>::infinity();  ///< bits per frame
+  int64_t snapshots = 0;
+  std::map<std::string, torch::Tensor> average;  ///< EMA of the parameters; empty: off
+};
+
+/// Atomically. `identity` (data, configuration, seed) must match when resuming.
+void saveState(const std::filesystem::path& path, const TrainingState& state,
+               const torch::nn::Module& net, const Adam& adam, const Json& identity);
+/// Throws InputError when the file is of another run.
+TrainingState loadState(const std::filesystem::path& path, torch::nn::Module& net, Adam& adam,
+                        const Json& identity);
+
+/// Puts the averaged weights into the net for its lifetime.
+class AveragedWeights {
+ public:
+  AveragedWeights(torch::nn::Module& net, const TrainingState& state);
+  ~AveragedWeights();
+  AveragedWeights(const AveragedWeights&) = delete;
+  AveragedWeights& operator=(const AveragedWeights&) = delete;
+
+ private:
+  torch::nn::Module& m_net;
+  std::map<std::string, torch::Tensor> m_own;
+};
+
+}  // namespace marey

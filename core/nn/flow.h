@@ -1,0 +1,143 @@
+// Layers of a conditional normalising flow over sequences (Kingma & Dhariwal 2018, "Glow";
+// Henter et al. 2020, "MoGlow", Sec. 3). `toLatent` maps data to latent, `toData` back.
+//
+// Shapes: values [B, T, D], conditioning [B, T, C], log-determinants [B, T] (of toLatent).
+// Recurrent state is a value passed in and out; a default-constructed one starts at zero.
+// Throws torch's c10::Error on wrong shapes; nothing here checks for NaN (the callers do).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "nn/torch.h"
+
+namespace marey::nn {
+
+struct Transformed {
+  torch::Tensor value;   ///< [B, T, D]
+  torch::Tensor logDet;  ///< [B, T]: log |det d latent / d data|
+};
+
+/// State of one recurrent net: hidden (and cell) [layers, B, H]; undefined means zero.
+struct RecurrentState {
+  torch::Tensor hidden;
+  torch::Tensor cell;
+};
+using FlowState = std::vector<RecurrentState>;  ///< one per step of flow
+
+/// Channel-wise affine map z = (x + bias) * exp(logs).
+class ActNorm : public torch::nn::Module {
+ public:
+  explicit ActNorm(int64_t channels);
+  Transformed toLatent(const torch::Tensor& x) const;
+  torch::Tensor toData(const torch::Tensor& z) const;
+  /// Zero mean and unit variance of the frames [N, D] given. A channel whose standard deviation
+  /// is below `floor` is treated as if it had that one (constant channels stay finite).
+  void initialise(const torch::Tensor& frames, double floor = 1e-4);
+
+  torch::Tensor bias, logs;  ///< [D]
+};
+
+/// Invertible linear map z = W x, W = P (L + I) (U + diag(sign * exp(logS))), or a free W.
+class InvertibleLinear : public torch::nn::Module {
+ public:
+  InvertibleLinear(int64_t channels, bool lu, at::Generator& generator);
+  Transformed toLatent(const torch::Tensor& x) const;
+  torch::Tensor toData(const torch::Tensor& z) const;
+  torch::Tensor weight() const;
+  /// Becomes the given matrix [D, D]. Throws NumericError when it is singular.
+  void assign(const torch::Tensor& matrix);
+  bool lu() const { return m_lu; }
+
+  torch::Tensor free;                                    ///< [D, D]; only without LU
+  torch::Tensor permutation, lower, upper, logS, signS;  ///< only with LU
+
+ private:
+  torch::Tensor logDet() const;
+  bool m_lu;
+};
+
+/// Which network gives shift and scale of a coupling.
+struct CouplingNetSpec {
+  std::string cell = "lstm";  ///< "lstm", "gru" or "feedforward"
+  int64_t hidden = 512;
+  int64_t layers = 2;
+};
+
+/// [B, T, inputs] -> [B, T, outputs]; the last, linear layer starts at zero.
+class CouplingNet : public torch::nn::Module {
+ public:
+  CouplingNet(int64_t inputs, int64_t outputs, CouplingNetSpec spec, at::Generator& generator);
+  torch::Tensor forward(const torch::Tensor& input, RecurrentState& state) const;
+
+ private:
+  torch::Tensor hiddenOutput(const torch::Tensor& input, RecurrentState& state) const;
+
+  CouplingNetSpec m_spec;
+  std::vector<torch::Tensor> m_weights;  ///< per layer: input, recurrent, two biases
+  torch::Tensor m_outWeight, m_outBias;
+};
+
+/// Affine coupling: z1 (first floor(D/2) channels) passes, z2' = (z2 + shift) * scale, with
+/// shift = even, scale = sigmoid(odd + 2) + 1e-6 of the net's outputs on [z1, conditioning].
+class AffineCoupling : public torch::nn::Module {
+ public:
+  AffineCoupling(int64_t channels, int64_t conditioning, const CouplingNetSpec& spec,
+                 at::Generator& generator);
+  Transformed toLatent(const torch::Tensor& x, const torch::Tensor& conditioning,
+                       RecurrentState& state) const;
+  torch::Tensor toData(const torch::Tensor& z, const torch::Tensor& conditioning,
+                       RecurrentState& state) const;
+
+ private:
+  struct ShiftScale {
+    torch::Tensor shift, scale;
+  };
+  ShiftScale shiftScale(const torch::Tensor& passed, const torch::Tensor& conditioning,
+                        RecurrentState& state) const;
+
+  int64_t m_passed;
+  std::shared_ptr<CouplingNet> m_net;
+};
+
+struct FlowSpec {
+  int64_t channels = 0;
+  int64_t conditioning = 0;
+  int64_t steps = 16;
+  bool lu = true;
+  CouplingNetSpec net;
+};
+
+/// K steps of actnorm, invertible linear and affine coupling.
+class Flow : public torch::nn::Module {
+ public:
+  Flow(const FlowSpec& spec, at::Generator& generator);
+  Transformed toLatent(const torch::Tensor& x, const torch::Tensor& conditioning,
+                       FlowState& state) const;
+  torch::Tensor toData(const torch::Tensor& z, const torch::Tensor& conditioning,
+                       FlowState& state) const;
+  /// Data-dependent start on frames x [N, 1, D] with conditioning [N, 1, C]: the first step
+  /// becomes PCA whitening when `whiten`, every further actnorm normalises what reaches it.
+  void initialise(const torch::Tensor& x, const torch::Tensor& conditioning, bool whiten);
+  const FlowSpec& spec() const { return m_spec; }
+
+ private:
+  struct Step {
+    std::shared_ptr<ActNorm> actnorm;
+    std::shared_ptr<InvertibleLinear> linear;
+    std::shared_ptr<AffineCoupling> coupling;
+  };
+  FlowSpec m_spec;
+  std::vector<Step> m_steps;
+};
+
+/// Base distribution of the latent, per frame. df <= 0: standard normal; else a multivariate
+/// Student-t with df degrees of freedom and identity scale.
+torch::Tensor baseLogDensity(const torch::Tensor& z, double df);
+
+/// PCA whitening matrix W [D, D] of a covariance: W S W' = I; eigenvalues below `floor` times
+/// the largest are raised to that.
+torch::Tensor whitening(const torch::Tensor& covariance, double floor);
+
+}  // namespace marey::nn

@@ -1,0 +1,12 @@
+// The model families that this build knows: one explicit list.
+#pragma once
+
+#include <span>
+
+#include "model/motion_model.h"
+
+namespace marey {
+
+std::span<const ModelFamily> modelFamilies();
+
+}  // namespace marey

@@ -1,0 +1,38 @@
+// Hyper-parameters of MoGlow (Henter et al. 2020, Sec. 4; design of the two published settings).
+#pragma once
+
+#include <string>
+
+#include "base/json.h"
+
+namespace marey::moglow {
+
+struct Config {
+  int poseDim = 63;
+  int controlDim = 3;
+  int tau = 10;       ///< past frames of pose and control
+  int lookahead = 0;  ///< future frames of control
+  int steps = 16;     ///< K
+  int hidden = 512;
+  int layers = 2;
+  std::string cell = "lstm";  ///< lstm, gru, feedforward
+  bool lu = true;
+  std::string base = "normal";       ///< normal, student_t
+  double df = 0.0;                   ///< degrees of freedom of the Student-t base
+  double dropout = 0.95;             ///< share of history frames hidden from the nets in training
+  std::string start = "orthogonal";  ///< orthogonal, whitening (data-dependent)
+  std::string poseBase = "none";     ///< none, linear ('MG+')
+  int baseOrder = 3;                 ///< past frames of the linear base
+  double baseRidge = 1e-4;           ///< ridge strength, relative to the mean square of the inputs
+  double baseFloor = 1e-4;           ///< smallest innovation eigenvalue, relative to the largest
+
+  int conditioning() const { return tau * poseDim + (tau + 1 + lookahead) * controlDim; }
+  double degreesOfFreedom() const { return base == "student_t" ? df : 0.0; }
+};
+
+/// From the "model" object of Marey's configurations, the flat keys of conformance vectors, or
+/// the authors' hparams (groups "Glow" and "Data"). Throws InputError naming the key.
+Config configFromJson(const Json& value, const std::string& origin);
+Json toJson(const Config& config);
+
+}  // namespace marey::moglow

@@ -1,0 +1,70 @@
+#include "moglow/family.h"
+
+#include "model/weights.h"
+#include "moglow/model.h"
+
+namespace marey::moglow {
+namespace {
+
+int64_t trainableParameters(const Config& c) {
+  // In closed form: a paper-size network need not be built to be counted.
+  const int64_t d = c.poseDim, h = c.hidden, gates = c.cell == "lstm" ? 4 : c.cell == "gru" ? 3 : 1;
+  const int64_t recurrent = c.cell == "feedforward" ? 0 : 1;
+  int64_t net = 0;
+  for (int64_t layer = 0; layer < c.layers; ++layer) {
+    const int64_t inputs = layer == 0 ? d / 2 + c.conditioning() : h;
+    net += gates * h * (inputs + recurrent * h + 1 + recurrent);
+  }
+  net += 2 * (d - d / 2) * (h + 1);
+  const int64_t linear = c.lu ? 2 * d * d + d : d * d;
+  return c.steps * (2 * d + linear + net);
+}
+
+ModelInfo describe(const Json& json, const std::string& origin) {
+  const Config config = configFromJson(json, origin);
+  ModelInfo out;
+  out.family = "moglow";
+  if (json.contains("name") && json["name"].is_string()) out.variant = json["name"];
+  out.poseDim = config.poseDim;
+  out.controlDim = config.controlDim;
+  out.context = config.tau;
+  out.lookahead = config.lookahead;
+  out.parameters = trainableParameters(config);
+  out.config = toJson(config);
+  return out;
+}
+
+/// Completes what the configuration says about a model.
+ModelInfo completed(ModelInfo info, const Config& config) {
+  info.context = config.tau;
+  info.lookahead = config.lookahead;
+  info.parameters = trainableParameters(config);
+  return info;
+}
+
+std::unique_ptr<MotionModel> load(const TensorFile& file, const std::string& origin) {
+  ModelInfo info = loadCommon(file, origin);
+  const Config config = configFromJson(info.config, origin);
+  if (config.poseDim != info.poseDim || config.controlDim != info.controlDim)
+    throwInput({.path = origin}, "a configuration of the stored dimensions", "{}/{} beside {}/{}",
+               config.poseDim, config.controlDim, info.poseDim, info.controlDim);
+  auto net = std::make_shared<Net>(config, 0);
+  loadWeights(*net, file, origin);
+  return std::make_unique<Model>(completed(std::move(info), config), std::move(net));
+}
+
+Trainee makeTrainee(const Json& modelConfig, const std::string& origin, int poseDim, int controlDim,
+                    uint64_t seed) {
+  Config config = configFromJson(modelConfig, origin);
+  config.poseDim = poseDim;
+  config.controlDim = controlDim;
+  return {std::make_shared<Net>(config, seed), toJson(config)};
+}
+
+}  // namespace
+
+ModelFamily family() {
+  return {.name = "moglow", .load = load, .describe = describe, .makeTrainee = makeTrainee};
+}
+
+}  // namespace marey::moglow

@@ -1,0 +1,117 @@
+#include <regex>
+
+#include "model/weights.h"
+#include "moglow/family.h"
+#include "moglow/model.h"
+#include "nn/torch_pickle.h"
+
+namespace marey::moglow {
+namespace {
+
+/// The authors' names -> ours; empty for a name that is none of theirs.
+std::string ourName(const std::string& theirs) {
+  static const std::regex pattern(R"(flow\.layers\.(\d+)\.(actnorm|invconv|f)\.(.+))");
+  static const std::map<std::string, std::string> leaves{
+      {"actnorm.bias", "_actnorm.bias"},
+      {"actnorm.logs", "_actnorm.logs"},
+      {"invconv.weight", "_linear.weight"},
+      {"invconv.p", "_linear.permutation"},
+      {"invconv.l", "_linear.lower"},
+      {"invconv.u", "_linear.upper"},
+      {"invconv.log_s", "_linear.log_s"},
+      {"invconv.sign_s", "_linear.sign_s"},
+      {"f.linear.weight", "_coupling.net.out_weight"},
+      {"f.linear.bias", "_coupling.net.out_bias"}};
+  std::smatch match;
+  if (!std::regex_match(theirs, match, pattern)) return {};
+  const std::string leaf = match[2].str() + "." + match[3].str();
+  std::string tail;
+  if (const auto found = leaves.find(leaf); found != leaves.end()) {
+    tail = found->second;
+  } else if (leaf.starts_with("f.lstm.") || leaf.starts_with("f.gru.")) {
+    tail = "_coupling.net." + leaf.substr(leaf.find('.', 2) + 1);
+  } else {
+    return {};
+  }
+  return "weights/flow.step" + match[1].str() + tail;
+}
+
+/// The state dict inside a checkpoint, under any of the usual wrappings, `module.` removed.
+std::map<std::string, Tensor> stateDict(const TorchCheckpoint& checkpoint) {
+  std::map<std::string, Tensor> out;
+  for (const auto& [path, tensor] : checkpoint.tensors) {
+    if (path.starts_with("optim/")) continue;
+    std::string key = path.substr(path.rfind('/') + 1);
+    if (key.starts_with("module.")) key = key.substr(7);
+    out[key] = tensor;
+  }
+  return out;
+}
+
+/// Channels from the first actnorm, control width from the first input weight.
+void inferDimensions(const std::map<std::string, Tensor>& state, Config& config,
+                     const std::string& origin) {
+  const auto bias = state.find("flow.layers.0.actnorm.bias");
+  if (bias == state.end())
+    throw InputError({.path = origin}, "a MoGlow checkpoint (tensor 'flow.layers.0.actnorm.bias')",
+                     "no such tensor");
+  config.poseDim = static_cast<int>(bias->second.count());
+  for (const char* name :
+       {"flow.layers.0.f.lstm.weight_ih_l0", "flow.layers.0.f.gru.weight_ih_l0"}) {
+    const auto found = state.find(name);
+    if (found == state.end() || found->second.shape.size() != 2) continue;
+    const int64_t controls =
+        found->second.shape[1] - config.poseDim / 2 - int64_t{config.tau} * config.poseDim;
+    const int frames = config.tau + 1 + config.lookahead;
+    if (controls < 0 || controls % frames != 0)
+      throwInput({.path = origin, .item = std::string("tensor '") + name + "'"},
+                 fmt::format("inputs for {} past poses of {} values and {} control frames",
+                             config.tau, config.poseDim, frames),
+                 "{} inputs", found->second.shape[1]);
+    config.controlDim = static_cast<int>(controls / frames);
+  }
+}
+
+bool hasDimensions(const Json& json) {
+  return json.contains("pose_dim");
+}
+
+}  // namespace
+
+std::unique_ptr<MotionModel> importCheckpoint(const std::string& checkpoint, const Json& json,
+                                              const std::string& configOrigin,
+                                              const Standardiser& standardiser,
+                                              const std::string& variant) {
+  Config config = configFromJson(json, configOrigin);
+  const auto state = stateDict(readTorchCheckpoint(checkpoint));
+  if (!hasDimensions(json)) inferDimensions(state, config, checkpoint);
+  TensorFile file;
+  for (const auto& [name, tensor] : state) {
+    const std::string key = ourName(name);
+    if (key.empty())
+      throw InputError({.path = checkpoint, .item = "tensor '" + name + "'"}, "a tensor of MoGlow",
+                       "one of another model");
+    Tensor plain = tensor;
+    // The authors keep channels in the middle of (1, D, 1).
+    if (name.find(".actnorm.") != std::string::npos) plain.shape = {tensor.count()};
+    file.tensors[key] = std::move(plain);
+  }
+  auto net = std::make_shared<Net>(config, 0);
+  loadWeights(*net, file, checkpoint);
+  ModelInfo info;
+  info.family = "moglow";
+  info.variant = variant;
+  info.poseDim = config.poseDim;
+  info.controlDim = config.controlDim;
+  info.context = config.tau;
+  info.lookahead = config.lookahead;
+  info.config = toJson(config);
+  info.parameters = 0;
+  for (const auto& p : net->parameters()) info.parameters += p.numel();
+  info.standardiser = standardiser;
+  info.provenance = {{"imported_from", checkpoint.substr(checkpoint.rfind('/') + 1)},
+                     {"standardiser", standardiser.empty() ? "none" : "refitted"}};
+  return std::make_unique<Model>(std::move(info), std::move(net));
+}
+
+}  // namespace marey::moglow

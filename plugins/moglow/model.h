@@ -1,0 +1,29 @@
+// MoGlow behind the MotionModel interface.
+#pragma once
+
+#include <memory>
+
+#include "model/motion_model.h"
+#include "moglow/net.h"
+
+namespace marey::moglow {
+
+class Model : public MotionModel {
+ public:
+  Model(ModelInfo info, std::shared_ptr<Net> net);
+  const ModelInfo& info() const override { return m_info; }
+  RolloutState start(int batch, const Matrix& history) const override;
+  Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,
+                     const Matrix& latent) const override;
+  SequenceScore observe(RolloutState& state, const Matrix& poses,
+                        const Matrix& controls) const override;
+  double baseDegreesOfFreedom() const override { return m_net->config().degreesOfFreedom(); }
+  TensorFile save() const override;
+
+ private:
+  ModelInfo m_info;
+  std::shared_ptr<Net> m_net;
+  torch::Tensor m_poseMean, m_poseStd, m_controlMean, m_controlStd;
+};
+
+}  // namespace marey::moglow

@@ -337,7 +337,8 @@ SnappedRate rateOfFrameTime(std::string_view text) {
     // Rounded or cut off: less than one unit of the last digit above, half a one below.
     const double miss = (exact - time) / unit;
     const bool close = std::abs(exact - time) < 2e-3 * exact;
-    if (close && miss > -0.5 - 1e-6 && miss < 1.0) return {rate, true};
+    if (close && miss > -0.5 - 1e-6 && miss < 1.0)
+      return {rate, std::abs(exact - time) > 1e-9 * exact};
   }
   return {fps, false};
 }

@@ -8,6 +8,9 @@
 #include "base/error.h"
 #include "io/asf_amc.h"
 #include "io/bvh.h"
+#include "io/csv_writer.h"
+#include "io/dog_text.h"
+#include "io/npz_clips.h"
 #include "io/text.h"
 
 namespace marey::io {
@@ -30,7 +33,8 @@ bool hasExtension(const ClipFormat& format, const std::string& extension) {
 std::string formatNames(bool writable) {
   std::string out;
   for (const ClipFormat& format : clipFormats())
-    if (!writable || format.write != nullptr) out += (out.empty() ? "" : ", ") + format.name;
+    if (writable ? format.write != nullptr : format.read != nullptr)
+      out += (out.empty() ? "" : ", ") + format.name;
   return out;
 }
 
@@ -53,8 +57,17 @@ const ClipFormat& formatForWriting(const std::filesystem::path& path, const Writ
 
 const std::vector<ClipFormat>& clipFormats() {
   static const std::vector<ClipFormat> formats = {
-      {"bvh", "Biovision hierarchy", {".bvh"}, canReadBvh, readBvh, nullptr},
-      {"amc", "Acclaim motion (AMC with its ASF skeleton)", {".amc"}, canReadAmc, readAmc, nullptr},
+      {"bvh", "Biovision hierarchy", {".bvh"}, canReadBvh, readBvh, writeBvh},
+      {"amc", "Acclaim motion with its ASF skeleton", {".amc"}, canReadAmc, readAmc, nullptr},
+      {"npz", "NumPy archive of clips", {".npz"}, canReadNpz, readNpzClips, writeNpzClip},
+      {"dog-text",
+       "27 joints as comma-separated text",
+       {".txt"},
+       canReadDogText,
+       readDogText,
+       nullptr},
+      {"csv", "positions, one row per frame and joint", {".csv"}, nullptr, nullptr, writeCsvLong},
+      {"csv-wide", "positions, one row per frame", {}, nullptr, nullptr, writeCsvWide},
   };
   return formats;
 }
@@ -74,7 +87,9 @@ const ClipFormat* formatOfContent(std::string_view head) {
 const ClipFormat& formatByName(const std::string& name) {
   for (const ClipFormat& format : clipFormats())
     if (format.name == name) return format;
-  throw UsageError(fmt::format("format: expected one of {}, found '{}'", formatNames(false), name));
+  std::string known;
+  for (const ClipFormat& format : clipFormats()) known += (known.empty() ? "" : ", ") + format.name;
+  throw UsageError(fmt::format("format: expected one of {}, found '{}'", known, name));
 }
 
 std::string readHead(const std::filesystem::path& path) {

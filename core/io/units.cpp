@@ -92,20 +92,21 @@ const LengthUnit& unitByName(const std::string& name) {
   throw UsageError(fmt::format("unit: expected one of {}, found '{}'", known, name));
 }
 
-UnitGuess guessUnit(const Skeleton& skeleton) {
+BodySize bodySize(const Skeleton& skeleton) {
   const SkeletonRoles roles = rolesOf(skeleton);
   const bool legs = !roles.feet.empty() && roles.leftHip >= 0;
   const double leg = legs ? chainLength(skeleton, roles.feet[0], roles.leftHip) : 0.0;
   const double spine = legs ? spineLength(skeleton, roles) : 0.0;
-  double size = kBodyPerLegAndSpine * (leg + spine);
-  std::string what = "body size (1.3 x leg plus spine)";
-  if (roles.quadruped || !(leg > 0.0) || !(spine > 0.0)) {
-    size = largestExtent(skeleton);
-    what = "largest extent of the rest pose";
-  }
-  if (!(size > 0.0) || !std::isfinite(size))
+  if (roles.quadruped || !(leg > 0.0) || !(spine > 0.0))
+    return {largestExtent(skeleton), "largest extent of the rest pose", roles.quadruped};
+  return {kBodyPerLegAndSpine * (leg + spine), "body size (1.3 x leg plus spine)", false};
+}
+
+UnitGuess guessUnit(const Skeleton& skeleton) {
+  const BodySize body = bodySize(skeleton);
+  if (!(body.size > 0.0) || !std::isfinite(body.size))
     return {unitByName("m"), 0.0, false, "the rest pose has no size"};
-  return bestUnit(size, roles.quadruped ? kAnimal : kPerson, what);
+  return bestUnit(body.size, body.quadruped ? kAnimal : kPerson, body.what);
 }
 
 UpGuess guessUp(const Clip& clip) {

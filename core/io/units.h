@@ -19,6 +19,14 @@ const std::vector<LengthUnit>& lengthUnits();
 /// Throws UsageError naming the units there are.
 const LengthUnit& unitByName(const std::string& name);
 
+/// The size that the guess rests on, in the skeleton's unit, and what it is.
+struct BodySize {
+  double size = 0.0;
+  std::string what;
+  bool quadruped = false;
+};
+BodySize bodySize(const Skeleton& skeleton);
+
 struct UnitGuess {
   LengthUnit unit;
   double bodyM = 0.0;    ///< body size that follows from the guess, metres

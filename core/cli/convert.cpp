@@ -1,0 +1,149 @@
+#include <memory>
+#include <set>
+
+#include "base/error.h"
+#include "cli/command.h"
+#include "io/clip_io.h"
+#include "io/text.h"
+#include "motion/resample.h"
+
+namespace marey::cli {
+namespace fs = std::filesystem;
+namespace {
+
+struct ConvertOptions {
+  std::vector<std::string> inputs;
+  std::string out;
+  double fps = 0.0;
+  std::string frames;
+  io::WriteOptions write;
+  io::ReadOptions read;
+  double fromFps = 0.0;
+};
+
+/// "a:b": frames a to b - 1, from 0; either may be left out. Negative ones count from the end.
+struct FrameRange {
+  std::optional<int> first, last;
+};
+
+std::optional<int> frameNumber(const std::string& text, const std::string& all) {
+  if (text.empty()) return std::nullopt;
+  const std::optional<double> value = io::parseNumber(text);
+  if (!value || *value != static_cast<int>(*value))
+    throw UsageError(fmt::format("--frames: expected a:b with whole numbers, found '{}'", all));
+  return static_cast<int>(*value);
+}
+
+FrameRange parseFrames(const std::string& text) {
+  if (text.empty()) return {};
+  const size_t colon = text.find(':');
+  if (colon == std::string::npos)
+    throw UsageError(fmt::format("--frames: expected a:b, found '{}'", text));
+  return {frameNumber(text.substr(0, colon), text), frameNumber(text.substr(colon + 1), text)};
+}
+
+Clip sliced(const Clip& clip, const FrameRange& range) {
+  if (!range.first && !range.last) return clip;
+  const auto fromEnd = [&clip](int frame) { return frame < 0 ? frame + clip.frameCount() : frame; };
+  return sliceFrames(clip, fromEnd(range.first.value_or(0)),
+                     fromEnd(range.last.value_or(clip.frameCount())));
+}
+
+/// The extension of files that are named here and not by the user.
+std::string extensionFor(const std::string& format) {
+  const io::ClipFormat& found = io::formatByName(format.empty() ? "bvh" : format);
+  return found.extensions.empty() ? ".csv" : found.extensions.front();
+}
+
+/// OUT is a folder when it is one, ends with a separator, or has no extension.
+bool isFolder(const fs::path& out) {
+  return fs::is_directory(out) || !out.has_filename() || out.extension().empty();
+}
+
+class Converter {
+ public:
+  Converter(const Context& context, const ConvertOptions& options)
+      : m_context(context), m_options(options), m_range(parseFrames(options.frames)) {}
+
+  Json convert(const std::vector<fs::path>& files) {
+    Progress progress = m_context.progress("converting");
+    const fs::path out(m_options.out);
+    const bool folder = isFolder(out);
+    for (size_t i = 0; i < files.size(); ++i) {
+      progress.throwIfCancelled();
+      const std::vector<Clip> clips = io::readClips(files[i], readOptions());
+      if (!folder && (files.size() > 1 || clips.size() > 1))
+        throw UsageError(
+            fmt::format("--out: expected a folder for several clips, found '{}'", m_options.out));
+      for (const Clip& clip : clips) write(clip, files[i], folder ? inFolder(out, clip) : out);
+      progress.report(static_cast<double>(i + 1) / static_cast<double>(files.size()));
+    }
+    return {{"written", m_written}};
+  }
+
+ private:
+  io::ReadOptions readOptions() const {
+    io::ReadOptions out = m_options.read;
+    if (m_options.fromFps > 0.0) out.fps = m_options.fromFps;
+    return out;
+  }
+
+  fs::path inFolder(const fs::path& folder, const Clip& clip) {
+    const std::string extension = extensionFor(m_options.write.format);
+    std::string name = clip.name;
+    for (int n = 2; !m_names.insert(name).second; ++n) name = fmt::format("{}_{}", clip.name, n);
+    return folder / (name + extension);
+  }
+
+  void write(const Clip& clip, const fs::path& from, const fs::path& to) {
+    Clip out = sliced(clip, m_range);
+    if (m_options.fps > 0.0) out = resampled(out, m_options.fps);
+    io::WriteOptions write = m_options.write;
+    if (write.format.empty() && isFolder(m_options.out)) write.format = "bvh";
+    write.recipe = {{"command", m_context.commandLine}, {"input", from.string()}};
+    if (!m_options.frames.empty()) write.recipe["frames"] = m_options.frames;
+    if (m_options.fps > 0.0) write.recipe["resampled_to_fps"] = m_options.fps;
+    for (const fs::path& path : io::writeClip(out, to, write)) m_written.push_back(path.string());
+  }
+
+  const Context& m_context;
+  const ConvertOptions& m_options;
+  FrameRange m_range;
+  std::set<std::string> m_names;
+  std::vector<std::string> m_written;
+};
+
+void runConvert(const Context& context, const ConvertOptions& options) {
+  const Json result = Converter(context, options).convert(expandInputs(options.inputs));
+  std::string text;
+  for (const Json& path : result["written"]) text += path.get<std::string>() + "\n";
+  context.print(result, text);
+}
+
+}  // namespace
+
+void addConvertCommand(CLI::App& app, Context& context) {
+  auto options = std::make_shared<ConvertOptions>();
+  CLI::App* command = addCommand(app, context, "convert", "Motion files between formats",
+                                 "marey convert walk.amc --fps 30 --out walk.bvh",
+                                 [&context, options] { runConvert(context, *options); });
+  command->add_option("inputs", options->inputs, "motion files, folders or @LIST")->required();
+  command->add_option("--out", options->out, "file, or folder for several clips")->required();
+  command->add_option(
+      "--format", options->write.format,
+      "bvh, npz, csv or csv-wide; default: by the file's extension, bvh in a folder");
+  command->add_option("--fps", options->fps, "resample to this rate")->check(CLI::PositiveNumber);
+  command->add_option("--frames", options->frames, "a:b, frames a to b-1 of the input, from 0");
+  command->add_option("--unit", options->write.unit,
+                      "unit to write: m, cm, mm, inch, foot, cmu (default: cm in BVH, else m)");
+  command->add_option("--up", options->write.up, "up axis to write: y (default) or z");
+  command->add_option("--euler-order", options->write.eulerOrder,
+                      "order of BVH rotation channels (default: ZXY)");
+  command->add_option("--from-unit", options->read.unit, "unit of the input (default: guessed)");
+  command->add_option("--from-up", options->read.up, "up axis of the input (default: guessed)");
+  command->add_option("--from-fps", options->fromFps, "frame rate of the input")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--asf", options->read.asf, "skeleton of AMC files");
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+
+#include "io/doctor_checks.h"
+
+namespace marey::io {
+namespace {
+
+/// Joints do not move so far within a frame of any usual rate, unless a frame is missing or wrong.
+constexpr double kJumpM = 0.1;
+constexpr double kJumpTimesMedian = 8.0;
+constexpr double kSpikeM = 0.1;
+constexpr double kSpikeTimesMedian = 20.0;
+constexpr double kSameM = 1e-6;
+constexpr double kFrozenS = 0.5;
+constexpr double kBelowM = 0.05;
+constexpr double kFloorOffsetM = 0.1;
+/// Faults of one kind that are listed one by one.
+constexpr size_t kMostListed = 5;
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double meanStep(const Clip& clip, int t) {
+  double out = 0.0;
+  for (int j = 0; j < clip.jointCount(); ++j) out += (clip.at(t, j) - clip.at(t - 1, j)).norm();
+  return out / clip.jointCount();
+}
+
+double largestStep(const Clip& clip, int t) {
+  double out = 0.0;
+  for (int j = 0; j < clip.jointCount(); ++j)
+    out = std::max<double>(out, (clip.at(t, j) - clip.at(t - 1, j)).norm());
+  return out;
+}
+
+/// How far a joint is from the middle of where it was and will be.
+double bend(const Clip& clip, int t, int joint) {
+  return (clip.at(t, joint) - 0.5f * (clip.at(t - 1, joint) + clip.at(t + 1, joint))).norm();
+}
+
+/// Adds the first few and says how many more there are.
+void addListed(std::vector<Fault> found, std::vector<Fault>& out) {
+  const size_t all = found.size();
+  if (all > kMostListed) {
+    found.resize(kMostListed);
+    found.back().evidence += fmt::format(" (and {} more)", all - kMostListed);
+  }
+  out.insert(out.end(), found.begin(), found.end());
+}
+
+}  // namespace
+
+void checkTeleports(const Clip& clip, std::vector<Fault>& out) {
+  std::vector<double> steps;
+  for (int t = 1; t < clip.frameCount(); ++t) steps.push_back(meanStep(clip, t));
+  const double usual = median(steps);
+  std::vector<Fault> found;
+  for (size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i] < kJumpM || steps[i] < kJumpTimesMedian * usual) continue;
+    const int frame = static_cast<int>(i) + 2;
+    found.push_back({"teleport", Severity::Warning,
+                     fmt::format("between frames {} and {} the joints move {:.2f} m on average "
+                                 "(median step {:.3f} m){}",
+                                 frame - 1, frame, steps[i], usual,
+                                 i == 0 ? "; the first frame may be a calibration pose" : ""),
+                     frame});
+  }
+  addListed(std::move(found), out);
+}
+
+void checkSpikes(const Clip& clip, std::vector<Fault>& out) {
+  std::vector<Fault> found;
+  for (int j = 0; j < clip.jointCount(); ++j) {
+    std::vector<double> bends;
+    for (int t = 1; t + 1 < clip.frameCount(); ++t) bends.push_back(bend(clip, t, j));
+    const double limit = std::max(kSpikeM, kSpikeTimesMedian * median(bends));
+    for (size_t i = 0; i < bends.size(); ++i) {
+      // A jump that stays bends the path by half of itself on both sides: checkTeleports' business.
+      const bool peak = (i == 0 || bends[i - 1] < 0.75 * bends[i]) &&
+                        (i + 1 == bends.size() || bends[i + 1] < 0.75 * bends[i]);
+      if (bends[i] < limit || !peak) continue;
+      found.push_back({"spike", Severity::Warning,
+                       fmt::format("joint '{}' is {:.2f} m off the path of its neighbour frames",
+                                   clip.skeleton->names[static_cast<size_t>(j)], bends[i]),
+                       static_cast<int>(i) + 2});
+    }
+  }
+  addListed(std::move(found), out);
+}
+
+void checkRepeats(const Clip& clip, std::vector<Fault>& out) {
+  std::vector<Fault> frozen;
+  int repeated = 0, firstRepeated = 0, run = 0;
+  for (int t = 1; t <= clip.frameCount(); ++t) {
+    if (t < clip.frameCount() && largestStep(clip, t) <= kSameM) {
+      ++run;
+      continue;
+    }
+    const int begin = t - run;  // 1-based: the frame that the run repeats
+    if (run > 0 && run + 1 >= kFrozenS * clip.fps)
+      frozen.push_back(
+          {"frozen", Severity::Warning,
+           fmt::format("frames {} to {} ({:.2f} s) are the same", begin, t, run / clip.fps),
+           begin});
+    else if (run > 0) {
+      if (repeated == 0) firstRepeated = begin + 1;
+      repeated += run;
+    }
+    run = 0;
+  }
+  addListed(std::move(frozen), out);
+  if (repeated > 0)
+    out.push_back(
+        {"duplicate_frames", Severity::Warning,
+         fmt::format("{} of {} frames repeat the frame before them", repeated, clip.frameCount()),
+         firstRepeated});
+}
+
+void checkFloor(const Clip& clip, double floorM, std::vector<Fault>& out) {
+  if (std::abs(floorM) > kFloorOffsetM)
+    out.push_back({"floor_offset", Severity::Note,
+                   fmt::format("the feet stand at a height of {:.2f} m", floorM), std::nullopt});
+  int below = 0, first = 0;
+  float lowest = 0.0f;
+  for (int t = 0; t < clip.frameCount(); ++t) {
+    float low = INFINITY;
+    for (const Vec3& p : clip.frame(t)) low = std::min(low, p.y());
+    if (low >= floorM - kBelowM) continue;
+    if (below++ == 0) first = t + 1;
+    lowest = std::min(lowest, low - static_cast<float>(floorM));
+  }
+  if (below > 0)
+    out.push_back({"below_floor", Severity::Warning,
+                   fmt::format("joints are up to {:.0f} cm below the feet's floor in {} frames",
+                               -100.0f * lowest, below),
+                   first});
+}
+
+}  // namespace marey::io

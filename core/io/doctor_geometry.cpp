@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "io/doctor_checks.h"
+
+namespace marey::io {
+namespace {
+
+constexpr float kNearFloorM = 0.05f;
+constexpr double kSkateMS = 0.5;
+constexpr double kLowQuantile = 0.05;
+
+float quantile(std::vector<float> values, double q) {
+  const auto at = static_cast<size_t>(q * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<long>(at), values.end());
+  return values[at];
+}
+
+/// The feet and all joints below them.
+std::set<int> footJoints(const Skeleton& s, const SkeletonRoles& roles) {
+  std::set<int> out(roles.feet.begin(), roles.feet.end());
+  for (int j = 0; j < s.jointCount(); ++j)
+    if (out.contains(s.parents[static_cast<size_t>(j)])) out.insert(j);
+  return out;
+}
+
+std::vector<float> heights(const Clip& clip, int joint) {
+  std::vector<float> out(static_cast<size_t>(clip.frameCount()));
+  for (int t = 0; t < clip.frameCount(); ++t) out[static_cast<size_t>(t)] = clip.at(t, joint).y();
+  return out;
+}
+
+Vec3 horizontal(const Vec3& v) {
+  return {v.x(), 0.0f, v.z()};
+}
+
+int firstChild(const Skeleton& s, int joint) {
+  const auto it = std::find(s.parents.begin(), s.parents.end(), joint);
+  return it == s.parents.end() ? -1 : static_cast<int>(it - s.parents.begin());
+}
+
+struct Forward {
+  enum class From { Feet, Spine, Movement } from = From::Movement;
+  int neck = -1;
+  std::vector<std::pair<int, int>> feet;  ///< ankle, toe
+};
+
+Forward forwardOf(const Skeleton& s, const SkeletonRoles& roles) {
+  Forward out;
+  out.neck = s.find("Neck");
+  if (roles.quadruped && out.neck >= 0) {
+    out.from = Forward::From::Spine;
+    return out;
+  }
+  for (const int foot : roles.feet)
+    if (const int toe = firstChild(s, foot); toe >= 0) out.feet.emplace_back(foot, toe);
+  if (!out.feet.empty()) out.from = Forward::From::Feet;
+  return out;
+}
+
+Vec3 forwardAt(const Clip& clip, const SkeletonRoles& roles, const Forward& forward, int t) {
+  if (forward.from == Forward::From::Spine)
+    return horizontal(clip.at(t, forward.neck) - clip.at(t, roles.hips));
+  if (forward.from == Forward::From::Movement)
+    return t == 0 ? Vec3(Vec3::Zero())
+                  : horizontal(clip.at(t, roles.hips) - clip.at(t - 1, roles.hips));
+  Vec3 out = Vec3::Zero();
+  for (const auto& [ankle, toe] : forward.feet)
+    out += horizontal(clip.at(t, toe) - clip.at(t, ankle)).stableNormalized();
+  return out;
+}
+
+}  // namespace
+
+std::optional<double> floorHeight(const Clip& clip, const SkeletonRoles& roles) {
+  if (roles.feet.empty()) return std::nullopt;
+  const std::set<int> feet = footJoints(*clip.skeleton, roles);
+  std::vector<float> lowest(static_cast<size_t>(clip.frameCount()), INFINITY);
+  for (int t = 0; t < clip.frameCount(); ++t)
+    for (const int j : feet)
+      lowest[static_cast<size_t>(t)] = std::min(lowest[static_cast<size_t>(t)], clip.at(t, j).y());
+  return quantile(lowest, kLowQuantile);
+}
+
+std::optional<double> footSkateShare(const Clip& clip, const SkeletonRoles& roles) {
+  if (roles.feet.empty() || clip.frameCount() < 2) return std::nullopt;
+  long low = 0, sliding = 0;
+  for (const int foot : roles.feet) {
+    const float limit = quantile(heights(clip, foot), kLowQuantile) + kNearFloorM;
+    for (int t = 1; t < clip.frameCount(); ++t) {
+      if (clip.at(t, foot).y() > limit || clip.at(t - 1, foot).y() > limit) continue;
+      ++low;
+      const double step = horizontal(clip.at(t, foot) - clip.at(t - 1, foot)).norm();
+      if (step * clip.fps > kSkateMS) ++sliding;
+    }
+  }
+  if (low == 0) return std::nullopt;
+  return static_cast<double>(sliding) / static_cast<double>(low);
+}
+
+BoneDrift boneDrift(const Clip& clip) {
+  BoneDrift out;
+  for (const auto& [parent, child] : clip.skeleton->bones()) {
+    double mean = 0.0, squares = 0.0;
+    for (int t = 0; t < clip.frameCount(); ++t) {
+      const double length = (clip.at(t, child) - clip.at(t, parent)).cast<double>().norm();
+      const double before = mean;
+      mean += (length - mean) / (t + 1);
+      squares += (length - before) * (length - mean);
+    }
+    const double deviation = std::sqrt(squares / clip.frameCount());
+    if (deviation <= out.maxStdM && !out.bone.empty()) continue;
+    out.maxStdM = deviation;
+    out.bone = clip.skeleton->names[static_cast<size_t>(parent)] + "-" +
+               clip.skeleton->names[static_cast<size_t>(child)];
+  }
+  return out;
+}
+
+Finding sidesByGeometry(const Clip& clip, const SkeletonRoles& roles) {
+  if (!roles.hasFacing()) return {"unknown", "no left and right hip known by name"};
+  const Forward forward = forwardOf(*clip.skeleton, roles);
+  constexpr float kLeastStepM = 0.002f;  // standing still says nothing of a direction
+  const float least = forward.from == Forward::From::Movement ? kLeastStepM : 1e-6f;
+  long right = 0, seen = 0;
+  for (int t = 0; t < clip.frameCount(); ++t) {
+    const Vec3 ahead = forwardAt(clip, roles, forward, t);
+    const Vec3 across = horizontal(clip.at(t, roles.leftHip) - clip.at(t, roles.rightHip));
+    if (!(ahead.norm() > least) || !(across.norm() > 1e-6f)) continue;
+    ++seen;
+    if (Vec3::UnitY().cross(ahead).dot(across) > 0.0f) ++right;
+  }
+  static constexpr const char* sources[] = {"ankle-to-toe", "hips-to-neck", "movement"};
+  const char* source = sources[static_cast<int>(forward.from)];
+  if (seen == 0) return {"unknown", fmt::format("no {} direction in any frame", source)};
+  const double share = static_cast<double>(right) / static_cast<double>(seen);
+  return {share >= 0.5 ? "as named" : "swapped",
+          fmt::format("the left hip is on the left of the {} direction in {:.0f} % of {} frames",
+                      source, 100.0 * share, seen)};
+}
+
+std::string skeletonKind(const Skeleton& s, const SkeletonRoles& roles) {
+  const std::string body = roles.quadruped      ? "quadruped"
+                           : roles.feet.empty() ? "skeleton without known feet"
+                                                : "biped";
+  const auto starts = [&s](const char* prefix) {
+    return std::any_of(s.names.begin(), s.names.end(),
+                       [prefix](const std::string& n) { return n.starts_with(prefix); });
+  };
+  if (starts("mixamorig")) return "Mixamo " + body;
+  if (s.find("lfemur") >= 0) return "CMU (ASF names) " + body;
+  if (s.find("LHipJoint") >= 0) return "CMU " + body;
+  if (s.find("UpperLeg_L") >= 0 && s.find("Shoulder_L") >= 0) return "Bandai-Namco " + body;
+  if (s.find("LeftUpLeg") >= 0) return body + " with Mixamo-like names";
+  return body;
+}
+
+}  // namespace marey::io

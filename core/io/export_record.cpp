@@ -1,0 +1,30 @@
+#include "io/export_record.h"
+
+namespace marey::io {
+
+Json sourceJson(const Clip& clip) {
+  const ClipSource& s = clip.source;
+  return {{"path", s.path},  {"format", s.format},
+          {"unit", s.unit},  {"metres_per_unit", s.metresPerUnit},
+          {"up", s.up},      {"fps", s.fps},
+          {"notes", s.notes}};
+}
+
+Json exportRecord(const Clip& clip, const WriteOptions& options, const Json& details) {
+  Json out = options.recipe.is_object() ? options.recipe : Json::object();
+  out["clip"] = {{"name", clip.name},
+                 {"fps", clip.fps},
+                 {"frames", clip.frameCount()},
+                 {"joints", clip.jointCount()}};
+  out["source"] = sourceJson(clip);
+  out["export"] = details;
+  return out;
+}
+
+std::filesystem::path recipePath(const std::filesystem::path& path) {
+  std::filesystem::path out = path;
+  out += ".recipe.json";
+  return out;
+}
+
+}  // namespace marey::io

@@ -8,7 +8,7 @@ namespace {
 using Kind = Value::Kind;
 
 constexpr int kMaxDepth = 64;
-constexpr size_t kMaxVisits = 2'000'000;
+constexpr size_t kMaxVisits = 500'000;
 constexpr size_t kMaxPathLength = 4096;
 constexpr size_t kMaxTextBytes = size_t{128} << 20;
 

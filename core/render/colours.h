@@ -1,0 +1,28 @@
+// One fixed colour per system, told apart by people with any common colour blindness.
+#pragma once
+
+#include <string>
+
+namespace marey::render {
+
+/// sRGB and opacity, each in [0, 1].
+struct Colour {
+  double r = 0.0, g = 0.0, b = 0.0, a = 1.0;
+  bool operator==(const Colour&) const = default;
+};
+
+/// Natural motion: near-black #222222.
+Colour naturalColour();
+/// System 0, 1, 2, ... of a comparison: the palette of Okabe and Ito (2008), "Color universal
+/// design", without black and yellow (too light on white); repeats after six.
+Colour colourOf(int systemIndex);
+/// Neutral ink for text, axes and grids; `lightness` 0 is black, 1 is white.
+Colour grey(double lightness);
+
+/// `amount` 0 gives `a`, 1 gives `b`; opacity is mixed as well.
+Colour mix(const Colour& a, const Colour& b, double amount);
+Colour withOpacity(Colour colour, double opacity);
+/// "#rrggbb", opacity left out.
+std::string hexOf(const Colour& colour);
+
+}  // namespace marey::render

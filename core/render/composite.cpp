@@ -1,0 +1,47 @@
+#include "render/composite.h"
+
+#include <array>
+
+namespace marey::render {
+
+void composite(Rendered& base, const std::vector<Rendered>& layers,
+               const std::vector<double>& opacity) {
+  const size_t pixels = base.depth.size();
+  std::array<size_t, mostLayers> order{};
+  for (size_t p = 0; p < pixels; ++p) {
+    size_t seen = 0;
+    for (size_t k = 0; k < layers.size(); ++k) {
+      const float depth = layers[k].depth[p];
+      if (depth >= base.depth[p]) continue;
+      size_t at = seen++;
+      for (; at > 0 && layers[order[at - 1]].depth[p] < depth; --at) order[at] = order[at - 1];
+      order[at] = k;
+    }
+    for (size_t i = 0; i < seen; ++i) {
+      const int share = static_cast<int>(256.0 * opacity[order[i]] + 0.5);
+      const uint8_t* from = &layers[order[i]].rgba[4 * p];
+      uint8_t* to = &base.rgba[4 * p];
+      for (int c = 0; c < 3; ++c) {
+        to[c] = static_cast<uint8_t>((to[c] * (256 - share) + from[c] * share + 128) >> 8);
+      }
+    }
+  }
+}
+
+Image shrunk(const Rendered& large) {
+  static_assert(oversampling == 2);
+  Image image(large.width / 2, large.height / 2);
+  const size_t rowBytes = 4 * static_cast<size_t>(large.width);
+  for (int y = 0; y < image.height; ++y) {
+    const uint8_t* a = large.rgba.data() + 2 * static_cast<size_t>(image.height - 1 - y) * rowBytes;
+    const uint8_t* b = a + rowBytes;
+    uint8_t* to = image.at(0, y);
+    for (int x = 0; x < image.width; ++x, a += 8, b += 8, to += 4) {
+      for (int c = 0; c < 3; ++c)
+        to[c] = static_cast<uint8_t>((a[c] + a[c + 4] + b[c] + b[c + 4] + 2) / 4);
+    }
+  }
+  return image;
+}
+
+}  // namespace marey::render

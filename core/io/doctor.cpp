@@ -31,7 +31,8 @@ Finding unitFinding(const Clip& clip) {
 
 Finding upFinding(const Clip& clip, const UpGuess& guess) {
   const std::string note = noteBeginning(clip, "up axis ");
-  return {clip.source.up, note.empty() ? guess.evidence : note};
+  if (!note.empty()) return {clip.source.up, note};
+  return {clip.source.up, clip.source.format == "bvh" ? guess.evidence : "the format fixes it"};
 }
 
 void addReaderFaults(const Clip& clip, std::vector<Fault>& out) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "io/doctor_checks.h"
 
@@ -25,10 +26,24 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-double meanStep(const Clip& clip, int t) {
-  double out = 0.0;
-  for (int j = 0; j < clip.jointCount(); ++j) out += (clip.at(t, j) - clip.at(t - 1, j)).norm();
-  return out / clip.jointCount();
+/// Mean joint displacement from each frame to the next.
+std::vector<double> meanSteps(const Clip& clip) {
+  std::vector<double> out;
+  for (int t = 1; t < clip.frameCount(); ++t) {
+    double sum = 0.0;
+    for (int j = 0; j < clip.jointCount(); ++j) sum += (clip.at(t, j) - clip.at(t - 1, j)).norm();
+    out.push_back(sum / clip.jointCount());
+  }
+  return out;
+}
+
+/// Steps far above the usual one: i is the step from frame i to i + 1, from 0.
+std::set<size_t> jumps(const std::vector<double>& steps) {
+  const double limit = std::max(kJumpM, kJumpTimesMedian * median(steps));
+  std::set<size_t> out;
+  for (size_t i = 0; i < steps.size(); ++i)
+    if (steps[i] >= limit) out.insert(i);
+  return out;
 }
 
 double largestStep(const Clip& clip, int t) {
@@ -56,12 +71,10 @@ void addListed(std::vector<Fault> found, std::vector<Fault>& out) {
 }  // namespace
 
 void checkTeleports(const Clip& clip, std::vector<Fault>& out) {
-  std::vector<double> steps;
-  for (int t = 1; t < clip.frameCount(); ++t) steps.push_back(meanStep(clip, t));
+  const std::vector<double> steps = meanSteps(clip);
   const double usual = median(steps);
   std::vector<Fault> found;
-  for (size_t i = 0; i < steps.size(); ++i) {
-    if (steps[i] < kJumpM || steps[i] < kJumpTimesMedian * usual) continue;
+  for (const size_t i : jumps(steps)) {
     const int frame = static_cast<int>(i) + 2;
     found.push_back({"teleport", Severity::Warning,
                      fmt::format("between frames {} and {} the joints move {:.2f} m on average "
@@ -75,12 +88,14 @@ void checkTeleports(const Clip& clip, std::vector<Fault>& out) {
 
 void checkSpikes(const Clip& clip, std::vector<Fault>& out) {
   std::vector<Fault> found;
+  const std::set<size_t> jumped = jumps(meanSteps(clip));
   for (int j = 0; j < clip.jointCount(); ++j) {
     std::vector<double> bends;
     for (int t = 1; t + 1 < clip.frameCount(); ++t) bends.push_back(bend(clip, t, j));
     const double limit = std::max(kSpikeM, kSpikeTimesMedian * median(bends));
     for (size_t i = 0; i < bends.size(); ++i) {
-      // A jump that stays bends the path by half of itself on both sides: checkTeleports' business.
+      if (jumped.contains(i) || jumped.contains(i + 1)) continue;
+      // A step that stays bends the path on both sides alike; a spike does so at its peak.
       const bool peak = (i == 0 || bends[i - 1] < 0.75 * bends[i]) &&
                         (i + 1 == bends.size() || bends[i + 1] < 0.75 * bends[i]);
       if (bends[i] < limit || !peak) continue;

@@ -7,8 +7,12 @@
 namespace marey::io {
 namespace {
 
-constexpr float kNearFloorM = 0.05f;
+/// A planted foot does not rise more; a swinging one passes higher. Paws swing lower.
+constexpr float kNearFloorM = 0.025f;
+constexpr float kPawNearFloorM = 0.01f;
 constexpr double kSkateMS = 0.5;
+/// Of the frames that must agree on where left is.
+constexpr double kClearShare = 0.65;
 constexpr double kLowQuantile = 0.05;
 
 float quantile(std::vector<float> values, double q) {
@@ -28,6 +32,15 @@ std::set<int> footJoints(const Skeleton& s, const SkeletonRoles& roles) {
 std::vector<float> heights(const Clip& clip, int joint) {
   std::vector<float> out(static_cast<size_t>(clip.frameCount()));
   for (int t = 0; t < clip.frameCount(); ++t) out[static_cast<size_t>(t)] = clip.at(t, joint).y();
+  return out;
+}
+
+/// Frames in which a joint is at most `near` above the 5 % quantile of its height.
+std::vector<char> lowFrames(const Clip& clip, int joint, float near) {
+  const std::vector<float> height = heights(clip, joint);
+  const float limit = quantile(height, kLowQuantile) + near;
+  std::vector<char> out;
+  for (const float y : height) out.push_back(y <= limit ? 1 : 0);
   return out;
 }
 
@@ -65,10 +78,12 @@ Vec3 forwardAt(const Clip& clip, const SkeletonRoles& roles, const Forward& forw
   if (forward.from == Forward::From::Movement)
     return t == 0 ? Vec3(Vec3::Zero())
                   : horizontal(clip.at(t, roles.hips) - clip.at(t - 1, roles.hips));
-  Vec3 out = Vec3::Zero();
-  for (const auto& [ankle, toe] : forward.feet)
-    out += horizontal(clip.at(t, toe) - clip.at(t, ankle)).stableNormalized();
-  return out;
+  // The lower foot: one that swings behind the body points anywhere.
+  const auto lower = std::min_element(forward.feet.begin(), forward.feet.end(),
+                                      [&clip, t](const auto& a, const auto& b) {
+                                        return clip.at(t, a.first).y() < clip.at(t, b.first).y();
+                                      });
+  return horizontal(clip.at(t, lower->second) - clip.at(t, lower->first));
 }
 
 }  // namespace
@@ -85,13 +100,17 @@ std::optional<double> floorHeight(const Clip& clip, const SkeletonRoles& roles) 
 
 std::optional<double> footSkateShare(const Clip& clip, const SkeletonRoles& roles) {
   if (roles.feet.empty() || clip.frameCount() < 2) return std::nullopt;
+  const float near = roles.quadruped ? kPawNearFloorM : kNearFloorM;
   long low = 0, sliding = 0;
   for (const int foot : roles.feet) {
-    const float limit = quantile(heights(clip, foot), kLowQuantile) + kNearFloorM;
-    for (int t = 1; t < clip.frameCount(); ++t) {
-      if (clip.at(t, foot).y() > limit || clip.at(t - 1, foot).y() > limit) continue;
+    const int toe = firstChild(*clip.skeleton, foot);
+    const std::vector<char> footLow = lowFrames(clip, foot, near);
+    const std::vector<char> toeLow = toe < 0 ? footLow : lowFrames(clip, toe, near);
+    for (size_t t = 1; t < footLow.size(); ++t) {
+      if ((footLow[t] & footLow[t - 1] & toeLow[t] & toeLow[t - 1]) == 0) continue;
       ++low;
-      const double step = horizontal(clip.at(t, foot) - clip.at(t - 1, foot)).norm();
+      const auto frame = static_cast<int>(t);
+      const double step = horizontal(clip.at(frame, foot) - clip.at(frame - 1, foot)).norm();
       if (step * clip.fps > kSkateMS) ++sliding;
     }
   }
@@ -135,7 +154,10 @@ Finding sidesByGeometry(const Clip& clip, const SkeletonRoles& roles) {
   const char* source = sources[static_cast<int>(forward.from)];
   if (seen == 0) return {"unknown", fmt::format("no {} direction in any frame", source)};
   const double share = static_cast<double>(right) / static_cast<double>(seen);
-  return {share >= 0.5 ? "as named" : "swapped",
+  const char* verdict = share > kClearShare         ? "as named"
+                        : share < 1.0 - kClearShare ? "swapped"
+                                                    : "unknown";
+  return {verdict,
           fmt::format("the left hip is on the left of the {} direction in {:.0f} % of {} frames",
                       source, 100.0 * share, seen)};
 }

@@ -17,7 +17,8 @@ struct ReadOptions {
   std::string unit;            ///< "m", "cm", "mm", "inch", "foot", "cmu"
   std::string up;              ///< "y" or "z"
   std::optional<double> fps;   ///< replaces the rate of the file
-  bool dropStaticRoot = true;  ///< leave out a root joint that never moves
+  bool dropStaticRoot = true;  ///< leave out a root joint that never moves or only
+                               ///< marks the body's place on the floor (its motion is kept)
   std::filesystem::path asf;   ///< skeleton of an AMC file; found beside it when empty
 };
 

@@ -70,6 +70,47 @@ void applyRate(Clip& clip, const ReadOptions& options) {
   clip.fps = *options.fps;
 }
 
+/// A root with one child that stays on the floor below it: a marker of where the body is, which
+/// exporters write for games. No body hangs on one bone from the floor.
+bool rootIsFloorMarker(const Clip& clip) {
+  constexpr float kFloorM = 1e-3f;
+  constexpr float kLeastHeightM = 0.2f;
+  const auto& parents = clip.skeleton->parents;
+  if (parents.size() < 2 || std::count(parents.begin(), parents.end(), 0) != 1) return false;
+  float height = 0.0f;
+  for (int t = 0; t < clip.frameCount(); ++t) {
+    if (std::abs(clip.at(t, 0).y()) > kFloorM) return false;
+    height += clip.at(t, 1).y() / static_cast<float>(clip.frameCount());
+  }
+  return height > kLeastHeightM;
+}
+
+/// Gives the motion of the root to its only child, so that the root is static at the origin.
+void stillRoot(Clip& clip) {
+  const auto width = static_cast<size_t>(clip.jointCount());
+  for (size_t i = 0; i < clip.positions.size(); i += width) clip.positions[i].setZero();
+  if (!clip.transforms) return;
+  auto& [rotations, translations] = *clip.transforms;
+  for (size_t i = 0; i < rotations.size(); i += width) {
+    translations[i + 1] = translations[i] + rotations[i] * translations[i + 1];
+    rotations[i + 1] = rotations[i] * rotations[i + 1];
+    translations[i].setZero();
+    rotations[i].setIdentity();
+  }
+}
+
+Clip withoutExtraRoot(Clip clip) {
+  const bool marker = rootIsFloorMarker(clip);
+  if (marker) stillRoot(clip);
+  const int joints = clip.jointCount();
+  const std::string name = clip.skeleton->names[0];
+  clip = withoutStaticRoot(std::move(clip));
+  if (marker && clip.jointCount() < joints)
+    clip.source.notes.back() =
+        "root joint '" + name + "' stays on the floor below the body: left out, its motion kept";
+  return clip;
+}
+
 }  // namespace
 
 Clip normalised(Clip clip, const FormatFacts& facts, const ReadOptions& options) {
@@ -79,7 +120,7 @@ Clip normalised(Clip clip, const FormatFacts& facts, const ReadOptions& options)
   applyUp(clip, facts, options);
   applyRate(clip, options);
   validate(clip);
-  return options.dropStaticRoot ? withoutStaticRoot(std::move(clip)) : clip;
+  return options.dropStaticRoot ? withoutExtraRoot(std::move(clip)) : clip;
 }
 
 void turnToYUp(Clip& clip) {

@@ -32,10 +32,11 @@ FootPose standing(const Placement& p) {
   return pose;
 }
 
-/// The toe stays, the heel rises; u in [0, 1] is the part of the push that is done.
+/// The toe stays, the heel rises; u in [0, 1] is the part of the push that is done. It leaves the
+/// floor with some speed, so that a contact has a clear end.
 FootPose pushing(const Step& step, double u) {
   FootPose pose = standing(step.from);
-  pose.pitch = step.pushPitch * u * u;
+  pose.pitch = step.pushPitch * u * (0.35 + 0.65 * u);
   pose.ankle = pose.toe - ankleToToe(pose.yaw, pose.pitch);
   return pose;
 }
@@ -53,13 +54,16 @@ double smoothStep(double u) {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// Quintic from p0 (velocity v0 per unit, no acceleration) to rest at p1, braking to the end as a
-/// leg that is swung forward does.
+/// Quintic from p0 (velocity v0 per unit) to rest at p1. It starts and brakes sharply, as a leg that
+/// is swung does, so that contacts have clear ends.
 Vector3d glide(const Vector3d& p0, const Vector3d& v0, const Vector3d& p1, double u) {
+  constexpr double kPull = 5.0;
   constexpr double kBrake = 9.0;
-  const double start = u * (1.0 + u * u * (-6.0 + u * (8.0 - 3.0 * u)));
-  const double end = 0.5 * u * u * u * (1.0 - u) * (1.0 - u);
-  return p0 + (smoothStep(u) - kBrake * end) * (p1 - p0) + start * v0;
+  const double v = 1.0 - u;
+  const double velocity = u * (1.0 + u * u * (-6.0 + u * (8.0 - 3.0 * u)));
+  const double pull = 0.5 * u * u * v * v * v;
+  const double brake = 0.5 * u * u * u * v * v;
+  return p0 + (smoothStep(u) + kPull * pull - kBrake * brake) * (p1 - p0) + velocity * v0;
 }
 
 FootPose swinging(const Step& step, double u) {

@@ -1,0 +1,184 @@
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "cli/command.h"
+#include "cli/readers.h"
+#include "motion/resample.h"
+#include "motion/roles.h"
+#include "stats/footsteps.h"
+#include "stats/statistic.h"
+
+namespace marey::cli {
+namespace {
+
+struct AnalyzeOptions {
+  std::vector<std::string> inputs, against;
+  io::ReadOptions read;
+  double fps = 0.0;
+  std::string feet;
+  double toleranceStepCmS = 0.0;
+  int resamples = 400;
+};
+
+std::vector<Clip> readAt(const std::vector<std::string>& inputs, const AnalyzeOptions& options,
+                         double fps, Progress progress) {
+  std::vector<Clip> clips = readAll(expandInputs(inputs), options.read, progress);
+  // Without a choice every clip is taken at the rate of the first one.
+  const double rate = fps > 0.0 ? fps : clips.front().fps;
+  for (Clip& clip : clips) clip = resampled(clip, rate);
+  return clips;
+}
+
+Json numberOrNull(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json footstepsJson(const stats::FootstepCurve& curve) {
+  return {{"tolerance_cm_s", curve.toleranceCmS},
+          {"count", curve.count},
+          {"max_count", curve.maxCount},
+          {"v95_cm_s", numberOrNull(curve.v95CmS)},
+          {"duration_mean_s", curve.durationMeanS},
+          {"duration_std_s", curve.durationStdS}};
+}
+
+Json statisticJson(const stats::StatisticResult& r, bool compared) {
+  Json out = {{"name", r.name},
+              {"unit", r.unit},
+              {"value", numberOrNull(r.value)},
+              {"low", numberOrNull(r.low)},
+              {"high", numberOrNull(r.high)}};
+  if (compared) {
+    out["natural"] = numberOrNull(r.natural);
+    out["natural_low"] = numberOrNull(r.naturalLow);
+    out["natural_high"] = numberOrNull(r.naturalHigh);
+    out["noise_floor"] = numberOrNull(r.noiseFloor);
+  }
+  out["definition"] = r.definition;
+  out["source"] = r.source;
+  return out;
+}
+
+std::string cell(const std::optional<double>& value) {
+  if (!value || !std::isfinite(*value)) return "-";
+  return fmt::format("{:.4g}", *value);
+}
+
+std::string range(const std::optional<double>& low, const std::optional<double>& high) {
+  return low && high ? cell(low) + " .. " + cell(high) : "";
+}
+
+std::string statisticsText(const std::vector<stats::StatisticResult>& results, bool compared) {
+  std::string text =
+      fmt::format("{:<28} {:<6} {:>9}  {:<20}", "statistic", "unit", "value", "95 % interval");
+  if (compared) text += fmt::format(" {:>9}  {:<20} {:>9}", "natural", "95 % interval", "noise");
+  text += "\n";
+  for (const stats::StatisticResult& r : results) {
+    text += fmt::format("{:<28} {:<6} {:>9}  {:<20}", r.name, r.unit, cell(r.value),
+                        range(r.low, r.high));
+    if (compared)
+      text += fmt::format(" {:>9}  {:<20} {:>9}", cell(r.natural),
+                          range(r.naturalLow, r.naturalHigh), cell(r.noiseFloor));
+    text += "\n";
+  }
+  return text;
+}
+
+double totalSeconds(const std::vector<Clip>& clips) {
+  double seconds = 0.0;
+  for (const Clip& clip : clips) seconds += clip.seconds();
+  return seconds;
+}
+
+std::string headText(const std::vector<Clip>& clips, const std::vector<int>& feet,
+                     const std::optional<stats::FootstepCurve>& curve) {
+  std::string text = fmt::format("{} clips, {:.1f} s at {} frames per second\n", clips.size(),
+                                 totalSeconds(clips), clips.front().fps);
+  if (!curve) return text + "no feet: choose them with --feet to count footsteps\n\n";
+  std::string names;
+  for (int foot : feet) names += (names.empty() ? "" : ", ") + clips.front().skeleton->names[foot];
+  text += fmt::format("footsteps of {}: {} at most", names, curve->maxCount);
+  if (curve->maxCount > 0)
+    text += fmt::format(", 95 % of them at {:.3g} cm/s, lasting {:.2f} +- {:.2f} s", curve->v95CmS,
+                        curve->durationMeanS, curve->durationStdS);
+  return text + "\n\n";
+}
+
+/// The chosen feet, else those that the joint names tell; none where they tell none.
+std::vector<int> chosenFeet(const Skeleton& skeleton, const std::string& names) {
+  return names.empty() ? rolesOf(skeleton).feet : jointsByName(skeleton, names);
+}
+
+/// 1.0 cm/s for people, 0.3 cm/s for dogs, as the papers have it.
+double toleranceStep(const Skeleton& skeleton, double chosen) {
+  if (chosen > 0.0) return chosen;
+  return rolesOf(skeleton).quadruped ? 0.3 : 1.0;
+}
+
+void runAnalyze(const Context& context, const AnalyzeOptions& options) {
+  Progress progress = context.progress("analyzing");
+  const std::vector<Clip> clips =
+      readAt(options.inputs, options, options.fps, progress.part(0.0, 0.3));
+  const double fps = clips.front().fps;
+  std::vector<Clip> natural;
+  if (!options.against.empty())
+    natural = readAt(options.against, options, fps, progress.part(0.3, 0.5));
+  const Skeleton& skeleton = *clips.front().skeleton;
+  stats::StatisticInput input{.clips = &clips};
+  if (!natural.empty()) input.natural = &natural;
+  input.feet = chosenFeet(skeleton, options.feet);
+  input.footStepCmS = toleranceStep(skeleton, options.toleranceStepCmS);
+
+  Json result = {{"clips", clips.size()}, {"seconds", totalSeconds(clips)}, {"fps", fps}};
+  std::optional<stats::FootstepCurve> curve;
+  if (!input.feet.empty()) {
+    curve = stats::footstepCurve(clips, {.feet = input.feet, .stepCmS = input.footStepCmS});
+    result["footsteps"] = footstepsJson(*curve);
+  }
+  Progress rest = progress.part(0.5, 1.0);
+  const auto results = stats::evaluate(
+      stats::allStatistics(), input, {.resamples = options.resamples, .seed = context.seed}, rest);
+  result["bone_length_rmse_cm"] = nullptr;
+  Json list = Json::array();
+  for (const stats::StatisticResult& r : results) {
+    if (r.name == "bone_length_rmse") result["bone_length_rmse_cm"] = numberOrNull(r.value);
+    list.push_back(statisticJson(r, input.natural != nullptr));
+  }
+  result["statistics"] = std::move(list);
+  context.print(result, headText(clips, input.feet, curve) +
+                            statisticsText(results, input.natural != nullptr));
+}
+
+}  // namespace
+
+void addAnalyzeCommand(CLI::App& app, Context& context) {
+  auto options = std::make_shared<AnalyzeOptions>();
+  CLI::App* command =
+      addCommand(app, context, "analyze", "Footsteps, bone lengths and other statistics of clips",
+                 "marey analyze samples/ --against @test.txt --fps 20 --feet LeftFoot,RightFoot",
+                 [&context, options] { runAnalyze(context, *options); });
+  command->add_option("inputs", options->inputs, "motion files, folders or @LIST")->required();
+  command->add_option("--against", options->against,
+                      "natural motion to compare with: files, folders or @LIST");
+  command
+      ->add_option("--fps", options->fps,
+                   "frame rate of the analysis (default: that of the first clip)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--feet", options->feet,
+                      "names of the foot joints, A,B (default: found by their names)");
+  command
+      ->add_option("--tolerance-step", options->toleranceStepCmS,
+                   "increment of the footstep tolerance in cm/s (default: 1.0; quadrupeds 0.3)")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--resamples", options->resamples,
+                   "bootstrap resamples of the intervals; 0: no intervals")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  addReadOptions(*command, options->read);
+}
+
+}  // namespace marey::cli

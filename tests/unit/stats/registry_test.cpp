@@ -1,0 +1,199 @@
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "unit/stats/small_clips.h"
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "motion/path.h"
+#include "motion/walker.h"
+#include "stats/bones.h"
+#include "stats/footsteps.h"
+#include "stats/statistic.h"
+
+namespace marey::stats {
+namespace {
+
+std::vector<Clip> walkerClips(int count, uint64_t seed) {
+  std::vector<Clip> out;
+  for (WalkerClip& w : walkerDataSet(count, 4.0, seed, 20.0)) out.push_back(std::move(w.clip));
+  return out;
+}
+
+const std::vector<Clip>& samples() {
+  static const std::vector<Clip> clips = walkerClips(14, 5);
+  return clips;
+}
+const std::vector<Clip>& natural() {
+  static const std::vector<Clip> clips = walkerClips(14, 6);
+  return clips;
+}
+
+StatisticInput inputOf(const std::vector<Clip>& clips, const std::vector<Clip>* against = nullptr) {
+  StatisticInput input{.clips = &clips, .natural = against};
+  input.feet = feetOf(*clips.front().skeleton);
+  return input;
+}
+
+const StatisticResult& find(const std::vector<StatisticResult>& results, const std::string& name) {
+  for (const StatisticResult& r : results)
+    if (r.name == name) return r;
+  throw std::runtime_error("no result " + name);
+}
+
+TEST(Registry, EveryStatisticHasAUniqueNameADefinitionAndASource) {
+  std::set<std::string> names;
+  for (const Statistic& s : allStatistics()) {
+    EXPECT_TRUE(names.insert(s.name).second) << s.name;
+    EXPECT_GT(s.definition.size(), 20u) << s.name;
+    EXPECT_TRUE(s.definition.ends_with(".")) << s.name;
+    EXPECT_FALSE(s.source.empty()) << s.name;
+    EXPECT_EQ(s.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_"), std::string::npos);
+  }
+  EXPECT_THROW(statisticByName("beauty"), UsageError);
+}
+
+TEST(Registry, EveryStatisticHasAFiniteValueOnWalkers) {
+  std::vector<std::vector<RootFrame>> wanted;
+  for (const Clip& clip : samples()) wanted.emplace_back(static_cast<size_t>(clip.frameCount()));
+  StatisticInput input = inputOf(samples(), &natural());
+  input.wanted = &wanted;
+  for (const Statistic& s : allStatistics()) {
+    ASSERT_TRUE(s.applies(input)) << s.name;
+    EXPECT_TRUE(std::isfinite(valueOf(s, input))) << s.name;
+  }
+}
+
+TEST(Registry, StatisticsWithoutWhatTheyNeedDoNotApply) {
+  const std::vector<Clip> one = {pointClip({Vec3(0, 0, 0), Vec3(1, 0, 0)}, 20.0)};
+  const StatisticInput input{.clips = &one};
+  std::vector<std::string> names;
+  for (const StatisticResult& r : evaluate(allStatistics(), input)) names.push_back(r.name);
+  EXPECT_EQ(names, std::vector<std::string>{"jerk"});
+  EXPECT_THROW(valueOf(statisticByName("footstep_v95"), input), InputError);
+}
+
+TEST(Registry, ValuesAreThoseOfTheFunctionsBehindThem) {
+  const StatisticInput input = inputOf(samples(), &natural());
+  const auto curve = footstepCurve(samples(), {.feet = input.feet});
+  EXPECT_EQ(valueOf(statisticByName("footstep_v95"), input), curve.v95CmS);
+  EXPECT_EQ(valueOf(statisticByName("footstep_duration"), input), curve.durationMeanS);
+  EXPECT_NEAR(valueOf(statisticByName("bone_length_rmse"), input),
+              boneLengthRmseCm(samples(), meanBoneLengths(natural())), 1e-9);
+}
+
+TEST(Registry, AWeightOfTwoEqualsTheClipTwice) {
+  const std::vector<Clip> clips(samples().begin(), samples().begin() + 4);
+  std::vector<Clip> repeated = clips;
+  repeated.push_back(clips[1]);
+  const StatisticInput input = inputOf(clips, &natural());
+  const StatisticInput doubled = inputOf(repeated, &natural());
+  for (const Statistic& s : allStatistics()) {
+    // Diversity takes no pair of a clip and its own copy; path error needs wanted paths.
+    if (s.name == "diversity" || !s.applies(input)) continue;
+    EXPECT_NEAR(s.prepare(input)({{1, 2, 1, 1}}), valueOf(s, doubled),
+                1e-9 * std::max(1.0, std::abs(valueOf(s, doubled))))
+        << s.name;
+  }
+}
+
+TEST(Registry, MotionComparedWithItselfHasNoDistance) {
+  const StatisticInput input = inputOf(samples(), &samples());
+  for (const Statistic& s : allStatistics()) {
+    if (!s.comparison) continue;
+    EXPECT_NEAR(valueOf(s, input), 0.0, 1e-9) << s.name;
+  }
+}
+
+TEST(Registry, AFasterWalkIsFartherFromNaturalThanTheNoiseFloor) {
+  std::vector<Clip> slow, fast;
+  for (uint64_t seed = 1; seed <= 8; ++seed) {
+    slow.push_back(walk(presetPath("slow", 4.0, 20.0), {.seed = seed, .fps = 20.0}).clip);
+    fast.push_back(walk(presetPath("fast", 4.0, 20.0), {.seed = seed, .fps = 20.0}).clip);
+  }
+  const auto results = evaluate(allStatistics(), inputOf(fast, &slow));
+  const StatisticResult& speed = find(results, "joint_speed_wasserstein");
+  // The roots differ by 120 cm/s.
+  EXPECT_GT(speed.value, 100.0);
+  EXPECT_LT(*speed.noiseFloor, 20.0);
+  EXPECT_EQ(speed.natural, speed.noiseFloor);
+}
+
+TEST(Bootstrap, WeightsAddUpToTheNumberOfClipsAndDependOnTheSeed) {
+  const auto weights = resampleWeights(50, 3, 0);
+  EXPECT_EQ(std::accumulate(weights.begin(), weights.end(), 0), 50);
+  EXPECT_EQ(weights, resampleWeights(50, 3, 0));
+  EXPECT_NE(weights, resampleWeights(50, 3, 1));
+  EXPECT_NE(weights, resampleWeights(50, 4, 0));
+}
+
+TEST(Bootstrap, TheIntervalOfAMeanIsThatOfTheNormalApproximation) {
+  // A statistic that is the mean of one number per clip: 0 for even clips, 1 for odd ones. Its
+  // standard error is 0.5 / sqrt(100), so that 95 % lie within 0.5 +- 0.098.
+  std::vector<Clip> clips;
+  for (int i = 0; i < 100; ++i)
+    clips.push_back(pointClip({Vec3(static_cast<float>(i % 2), 0, 0)}, 20.0));
+  const Statistic mean{"mean",
+                       "",
+                       "The mean of x.",
+                       "test",
+                       false,
+                       [](const StatisticInput&) { return true; },
+                       [](const StatisticInput& in) {
+                         const std::vector<Clip>* set = in.clips;
+                         return [set](const Weights& w) {
+                           double sum = 0.0;
+                           for (size_t i = 0; i < set->size(); ++i)
+                             sum += w.clips[i] * (*set)[i].at(0, 0).x();
+                           return sum / std::accumulate(w.clips.begin(), w.clips.end(), 0.0);
+                         };
+                       }};
+  const StatisticInput input{.clips = &clips, .natural = &clips};
+  const StatisticResult r = evaluate({mean}, input, {.resamples = 2000, .splits = 400}).front();
+  EXPECT_NEAR(r.value, 0.5, 1e-12);
+  EXPECT_NEAR(*r.low, 0.402, 0.02);
+  EXPECT_NEAR(*r.high, 0.598, 0.02);
+  // Halves of 50 without replacement: the difference of their means has the standard deviation
+  // 2 * 0.5 / sqrt(99), and a normal value's mean absolute value is sqrt(2 / pi) of that.
+  EXPECT_NEAR(*r.noiseFloor, 0.0802, 0.01);
+}
+
+TEST(Bootstrap, OneClipHasNoInterval) {
+  const std::vector<Clip> one = {samples().front()};
+  const auto results = evaluate(allStatistics(), inputOf(one));
+  const StatisticResult& jerk = find(results, "jerk");
+  EXPECT_FALSE(jerk.low.has_value());
+  EXPECT_FALSE(jerk.noiseFloor.has_value());
+}
+
+TEST(Bootstrap, TheSameSeedGivesTheSameNumbers) {
+  const StatisticInput input = inputOf(samples());
+  const EvaluationOptions options{.resamples = 50, .seed = 9};
+  const auto first = evaluate(allStatistics(), input, options);
+  const auto second = evaluate(allStatistics(), input, options);
+  ASSERT_EQ(first.size(), second.size());
+  for (size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i].low, second[i].low) << first[i].name;
+    EXPECT_EQ(first[i].high, second[i].high) << first[i].name;
+  }
+}
+
+TEST(Evaluation, MixedRatesJointsAndNoClipsAreRefused) {
+  const std::vector<Clip> none;
+  EXPECT_THROW(evaluate(allStatistics(), {.clips = &none}), InputError);
+  std::vector<Clip> rates = {stepClip({0.1f}, 20.0), stepClip({0.1f}, 30.0)};
+  EXPECT_THROW(evaluate(allStatistics(), {.clips = &rates}), InputError);
+  const std::vector<Clip> point = {stepClip({0.1f}, 20.0)};
+  EXPECT_THROW(evaluate(allStatistics(), inputOf(samples(), &point)), InputError);
+}
+
+TEST(Evaluation, StopsWhenAsked) {
+  std::stop_source source;
+  source.request_stop();
+  Progress progress([](double, std::string_view) {}, source.get_token());
+  EXPECT_THROW(evaluate(allStatistics(), inputOf(samples()), {}, progress), CancelledError);
+}
+
+}  // namespace
+}  // namespace marey::stats

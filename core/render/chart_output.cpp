@@ -1,3 +1,4 @@
+#include <cmath>
 #include <regex>
 
 #include <cairo-pdf.h>
@@ -19,9 +20,10 @@ void check(const ChartGrid& grid) {
 }
 
 /// Draws on a stream surface and closes it; the surface is destroyed.
-void drawOn(cairo_surface_t* surface, const ChartGrid& grid, const ChartSize& size) {
+void drawOn(cairo_surface_t* surface, const ChartGrid& grid, const ChartSize& size,
+            std::vector<TextRecord>* texts = nullptr) {
   cairo_t* context = cairo_create(surface);
-  Drawing drawing(context);
+  Drawing drawing(context, texts);
   drawGrid(drawing, grid, size);
   cairo_destroy(context);
   cairo_surface_finish(surface);
@@ -40,6 +42,40 @@ std::string withOwnIds(const std::string& svg, const std::string& prefix) {
   return std::regex_replace(std::regex_replace(svg, group, "id=\"page0\""), id,
                             "$1" + prefix + "-$2");
 }
+const char* anchorOf(Align align) {
+  if (align == Align::Centre) return "middle";
+  return align == Align::Right ? "end" : "start";
+}
+
+/// Verdana stands in for DejaVu Sans where that is missing: it is as wide.
+std::string textElement(const TextRecord& record, const std::string& extra) {
+  const TextStyle& style = record.style;
+  std::string place = fmt::format("x=\"{:.2f}\" y=\"{:.2f}\"", record.at.x, record.at.y);
+  if (style.turn != 0.0) {
+    place += fmt::format(" transform=\"rotate({:.2f} {:.2f} {:.2f})\"", style.turn * 180.0 / M_PI,
+                         record.at.x, record.at.y);
+  }
+  return fmt::format(
+      "<text {} font-family=\"DejaVu Sans, Verdana, Geneva, sans-serif\" font-size=\"{:g}\"{} "
+      "text-anchor=\"{}\" {}>{}</text>\n",
+      place, style.size, style.bold ? " font-weight=\"bold\"" : "", anchorOf(style.align), extra,
+      escapeXml(record.text));
+}
+
+std::string textElements(const std::vector<TextRecord>& records) {
+  std::string elements;
+  for (const TextRecord& record : records) {
+    if (record.text.empty()) continue;
+    if (record.style.halo) {
+      elements +=
+          textElement(record,
+                      "fill=\"none\" stroke=\"#ffffff\" stroke-opacity=\"0.85\" "
+                      "stroke-width=\"3.5\" stroke-linejoin=\"round\" aria-hidden=\"true\"");
+    }
+    elements += textElement(record, fmt::format("fill=\"{}\"", hexOf(record.style.colour)));
+  }
+  return elements;
+}
 }  // namespace
 
 ChartGrid single(Chart chart) {
@@ -55,8 +91,10 @@ std::string drawSvg(const ChartGrid& grid, const ChartSize& size, const Recipe& 
   cairo_surface_t* surface =
       cairo_svg_surface_create_for_stream(append, &svg, size.width, size.height);
   cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
-  drawOn(surface, grid, size);
+  std::vector<TextRecord> texts;
+  drawOn(surface, grid, size, &texts);
   svg = withOwnIds(svg, idPrefix);
+  svg.insert(svg.rfind("</svg>"), textElements(texts));
   const size_t afterTag = svg.find('>', svg.find("<svg")) + 1;
   if (!recipe.empty()) {
     svg.insert(afterTag, "\n<metadata>" + escapeXml(recipeText(recipe)) + "</metadata>");

@@ -4,26 +4,37 @@
 
 namespace marey::render {
 
-void composite(Rendered& base, const std::vector<Rendered>& layers,
-               const std::vector<double>& opacity) {
-  const size_t pixels = base.depth.size();
-  std::array<size_t, mostLayers> order{};
+namespace {
+/// What remains of a see-through figure's opacity in front of a solid one.
+constexpr double thinning = 0.45;
+
+void blend(uint8_t* to, const uint8_t* from, int share) {
+  for (int c = 0; c < 3; ++c) {
+    to[c] = static_cast<uint8_t>((to[c] * (256 - share) + from[c] * share + 128) >> 8);
+  }
+}
+}  // namespace
+
+void composite(Rendered& floor, const std::vector<LayerPicture>& layers) {
+  const size_t pixels = floor.depth.size();
+  std::array<size_t, mostLayers + 1> order{};
   for (size_t p = 0; p < pixels; ++p) {
     size_t seen = 0;
     for (size_t k = 0; k < layers.size(); ++k) {
-      const float depth = layers[k].depth[p];
-      if (depth >= base.depth[p]) continue;
+      const float depth = layers[k].picture.depth[p];
+      if (depth >= floor.depth[p]) continue;
       size_t at = seen++;
-      for (; at > 0 && layers[order[at - 1]].depth[p] < depth; --at) order[at] = order[at - 1];
+      for (; at > 0 && layers[order[at - 1]].picture.depth[p] < depth; --at)
+        order[at] = order[at - 1];
       order[at] = k;
     }
+    double thinned = 1.0;
     for (size_t i = 0; i < seen; ++i) {
-      const int share = static_cast<int>(256.0 * opacity[order[i]] + 0.5);
-      const uint8_t* from = &layers[order[i]].rgba[4 * p];
-      uint8_t* to = &base.rgba[4 * p];
-      for (int c = 0; c < 3; ++c) {
-        to[c] = static_cast<uint8_t>((to[c] * (256 - share) + from[c] * share + 128) >> 8);
-      }
+      const LayerPicture& layer = layers[order[i]];
+      const bool solid = layer.opacity >= 1.0;
+      const double share = solid ? 1.0 : layer.opacity * thinned;
+      blend(&floor.rgba[4 * p], &layer.picture.rgba[4 * p], static_cast<int>(256.0 * share + 0.5));
+      if (solid) thinned = thinning;
     }
   }
 }

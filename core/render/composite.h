@@ -14,10 +14,16 @@ constexpr int oversampling = 2;
 /// More see-through layers than these are merged.
 constexpr size_t mostLayers = 8;
 
-/// Lays see-through layers over the solid one, pixel by pixel from far to near. All of one size;
-/// one opacity per layer, at most `mostLayers`.
-void composite(Rendered& base, const std::vector<Rendered>& layers,
-               const std::vector<double>& opacity);
+/// Figures drawn together without the floor.
+struct LayerPicture {
+  Rendered picture;
+  double opacity = 1.0;
+};
+
+/// Lays figures over the floor, pixel by pixel from far to near. All pictures of one size, at most
+/// mostLayers + 1 of them. See-through figures in front of solid ones (opacity 1) are laid on
+/// thinner, so that what all are compared with stays visible in a crowd.
+void composite(Rendered& floor, const std::vector<LayerPicture>& layers);
 /// The average of each oversampled pixel, rows turned to run from the top; opaque.
 Image shrunk(const Rendered& large);
 

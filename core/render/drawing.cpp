@@ -6,7 +6,8 @@
 
 namespace marey::render {
 
-Drawing::Drawing(cairo_t* context) : m_context(context) {
+Drawing::Drawing(cairo_t* context, std::vector<TextRecord>* texts)
+    : m_context(context), m_texts(texts) {
   // Unhinted outlines and metrics: the same text at any scale and on any surface.
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
@@ -93,6 +94,10 @@ double Drawing::textWidth(const std::string& text, const TextStyle& style) {
 }
 
 void Drawing::text(const std::string& text, Point at, const TextStyle& style) {
+  if (m_texts != nullptr) {
+    m_texts->push_back({text, at, style});
+    return;
+  }
   const double width = textWidth(text, style);
   const double share = style.align == Align::Left ? 0.0 : style.align == Align::Centre ? 0.5 : 1.0;
   cairo_save(m_context);

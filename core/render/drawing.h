@@ -32,10 +32,19 @@ struct TextStyle {
   bool halo = false;  ///< a white rim, for text over lines
 };
 
+/// A text that was left to the caller: cairo's SVG surface turns text into outlines, which nobody
+/// can search or copy.
+struct TextRecord {
+  std::string text;
+  Point at;
+  TextStyle style;
+};
+
 /// Draws on a cairo context that someone else owns.
 class Drawing {
  public:
-  explicit Drawing(cairo_t* context);
+  /// With `texts`, texts are collected there (in order, in page coordinates) and not drawn.
+  explicit Drawing(cairo_t* context, std::vector<TextRecord>* texts = nullptr);
 
   void fillBox(const Box& box, const Colour& colour);
   void strokeBox(const Box& box, const Colour& colour, double width);
@@ -58,6 +67,7 @@ class Drawing {
   void setFont(const TextStyle& style);
 
   cairo_t* m_context;
+  std::vector<TextRecord>* m_texts;
 };
 
 /// A cairo image surface to draw on, and its pixels as an Image (or an Image to draw over).

@@ -10,7 +10,7 @@ namespace marey::render {
 namespace {
 /// Text grows with the picture, but stays readable in small ones.
 double textScale(int height) {
-  return std::clamp(height / 640.0, 0.8, 2.0);
+  return std::clamp(height / 480.0, 0.75, 2.4);
 }
 
 std::vector<std::pair<std::string, Colour>> systemsOf(const SceneSpec& spec) {

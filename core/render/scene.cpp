@@ -266,16 +266,13 @@ void SceneRenderer::Internals::castShadows(const std::vector<Figure>& figures) {
 Image SceneRenderer::Internals::picture(const std::vector<Figure>& figures, const Camera& from,
                                         const std::optional<ScaleBar>& placedBar) {
   if (spec.floor) castShadows(figures);
-  const std::vector<Layer> layers = layersOf(figures);
-  Rendered base = draw(layers.front(), true, from);
-  std::vector<Rendered> over;
-  std::vector<double> opacity;
-  for (size_t i = 1; i < layers.size(); ++i) {
-    over.push_back(draw(layers[i], false, from));
-    opacity.push_back(layers[i].opacity);
+  Rendered ground = draw({}, true, from);
+  std::vector<LayerPicture> over;
+  for (const Layer& layer : layersOf(figures)) {
+    if (!layer.figures.empty()) over.push_back({draw(layer, false, from), layer.opacity});
   }
-  composite(base, over, opacity);
-  return withOverlay(shrunk(base), spec, from, placedBar);
+  composite(ground, over);
+  return withOverlay(shrunk(ground), spec, from, placedBar);
 }
 
 std::vector<Figure> SceneRenderer::Internals::figuresAt(double timeS) const {

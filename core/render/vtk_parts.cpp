@@ -94,7 +94,7 @@ vtkSmartPointer<vtkTexture> toTexture(const Image& image) {
   texture->SetColorModeToDirectScalars();
   texture->InterpolateOn();
   texture->MipmapOn();
-  texture->SetMaximumAnisotropicFiltering(8.0F);
+  texture->SetMaximumAnisotropicFiltering(4.0F);
   texture->RepeatOff();
   texture->EdgeClampOn();
   return texture;
@@ -114,9 +114,9 @@ void setFloorPicture(vtkActor* actor, const Image& image, double x0, double z0, 
   vtkPolyDataMapper::SafeDownCast(actor->GetMapper())
       ->SetInputData(floorQuad(x0, z0, x1, z1, heightM));
   actor->SetTexture(toTexture(image));
-  const bool opaque = image.pixels.empty() || image.pixels[3] == 255;
-  if (opaque) actor->ForceOpaqueOn();
-  if (!opaque) actor->ForceTranslucentOn();
+  // The opaque pass blends as well, and the floor's pictures are added from below to above: that
+  // spares the costly passes for see-through surfaces.
+  actor->ForceOpaqueOn();
 }
 
 void addLights(vtkRenderer* renderer) {

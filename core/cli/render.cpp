@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "cli/command.h"
+#include "cli/readers.h"
+#include "render/video.h"
+
+namespace marey::cli {
+namespace fs = std::filesystem;
+namespace {
+
+struct RenderOptions {
+  std::vector<std::string> inputs, natural;
+  std::string out, size = "1280x720", camera = "three-quarter", title;
+  double fps = 30.0, strobeS = 0.0;
+  bool orthographic = false, follow = false;
+  io::ReadOptions read;
+};
+
+/// Videos and pictures name their systems only while the legend stays one line.
+constexpr size_t mostNames = 6;
+
+struct Size {
+  int width = 0, height = 0;
+};
+
+Size parseSize(const std::string& text) {
+  Size size;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) != 2 ||
+      size.width < 32 || size.height < 32 || size.width > 8192 || size.height > 8192) {
+    throw UsageError(
+        fmt::format("--size: expected WIDTHxHEIGHT from 32x32 to 8192x8192, found '{}'", text));
+  }
+  return size;
+}
+
+render::View parseView(const std::string& text) {
+  if (text == "side") return render::View::Side;
+  if (text == "top") return render::View::Top;
+  return render::View::ThreeQuarter;
+}
+
+/// Natural clips near-black and solid; the others see-through beside them, else a colour each.
+render::SceneSpec sceneOf(std::vector<Clip> natural, std::vector<Clip> clips,
+                          const RenderOptions& options) {
+  render::SceneSpec scene;
+  scene.title = options.title;
+  scene.view = parseView(options.camera);
+  scene.orthographic = options.orthographic;
+  const double strobeS = options.strobeS > 0.0 ? options.strobeS : 0.4;
+  const auto add = [&](Clip& clip, const std::string& system, const render::Colour& colour,
+                       double opacity) {
+    render::SceneMotion motion;
+    motion.clip = std::make_shared<const Clip>(std::move(clip));
+    motion.system = system;
+    motion.colour = colour;
+    motion.opacity = opacity;
+    motion.strobeS = strobeS;
+    scene.motions.push_back(std::move(motion));
+  };
+  for (Clip& clip : natural) add(clip, "natural", render::naturalColour(), 1.0);
+  const bool named = clips.size() <= mostNames;
+  const double opacity = std::clamp(1.4 / static_cast<double>(clips.size()), 0.2, 0.6);
+  for (size_t i = 0; i < clips.size(); ++i) {
+    const std::string name = clips[i].name;
+    if (natural.empty()) {
+      const bool alone = clips.size() == 1;
+      add(clips[i], named ? name : "",
+          alone ? render::naturalColour() : render::colourOf(static_cast<int>(i)), 1.0);
+    } else {
+      add(clips[i], clips.size() == 1 ? name : "samples", render::colourOf(0), opacity);
+    }
+  }
+  return scene;
+}
+
+render::Recipe recipeOf(const Context& context, const std::vector<fs::path>& files) {
+  render::Recipe recipe = {
+      {"program", "marey"}, {"version", MAREY_VERSION}, {"command", context.commandLine}};
+  std::string names;
+  for (const fs::path& file : files) names += (names.empty() ? "" : ", ") + file.string();
+  recipe.emplace_back("inputs", names);
+  return recipe;
+}
+
+void checkKind(const RenderOptions& options) {
+  const std::string extension = fs::path(options.out).extension().string();
+  if (extension == ".png" || extension == ".mp4") {
+    if (extension == ".png" && options.follow)
+      throw UsageError("--follow: only a video (.mp4) has a moving camera");
+    return;
+  }
+  throw UsageError(
+      fmt::format("--out: expected a file ending in .mp4 or .png, found '{}'", options.out));
+}
+
+void runRender(const Context& context, const RenderOptions& options) {
+  checkKind(options);
+  const Size size = parseSize(options.size);
+  const std::vector<fs::path> files = expandInputs(options.inputs);
+  std::vector<fs::path> naturalFiles;
+  if (!options.natural.empty()) naturalFiles = expandInputs(options.natural);
+  Progress progress = context.progress("rendering");
+  Progress reading = progress.part(0.0, 0.1);
+  const render::SceneSpec scene = sceneOf(readAll(naturalFiles, options.read, reading),
+                                          readAll(files, options.read, reading), options);
+  std::vector<fs::path> all = naturalFiles;
+  all.insert(all.end(), files.begin(), files.end());
+  const render::Recipe recipe = recipeOf(context, all);
+  int frames = 1;
+  if (fs::path(options.out).extension() == ".png") {
+    render::writePng(options.out, render::renderScene(scene, size.width, size.height), recipe);
+  } else {
+    const render::VideoFormat format{
+        .width = size.width, .height = size.height, .fps = options.fps};
+    Progress drawing = progress.part(0.1, 1.0);
+    frames = render::writeSceneVideo(options.out, scene, format,
+                                     {.follow = options.follow, .trail = options.strobeS > 0.0},
+                                     recipe, drawing);
+  }
+  progress.report(1.0);
+  const double fps = fs::path(options.out).extension() == ".png" ? 0.0 : options.fps;
+  context.print({{"file", options.out}, {"frames", frames}, {"fps", fps}},
+                fmt::format("{}\n", options.out));
+}
+
+}  // namespace
+
+void addRenderCommand(CLI::App& app, Context& context) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command =
+      addCommand(app, context, "render", "A video (.mp4) or one strobed picture (.png) of motions",
+                 "marey render samples/ --natural walk.bvh --out fan.png --strobe 0.5",
+                 [&context, options] { runRender(context, *options); });
+  command->add_option("inputs", options->inputs, "motion files, folders or @LIST")->required();
+  command->add_option("--natural", options->natural,
+                      "motion to compare with: near-black, the others see-through over it");
+  command->add_option("--out", options->out, "file ending in .mp4 or .png")->required();
+  command->add_option("--fps", options->fps, "frames per second of a video")
+      ->check(CLI::Range(1.0, 240.0))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "pixels, even for videos")->capture_default_str();
+  command->add_option("--camera", options->camera, "three-quarter, side or top")
+      ->check(CLI::IsMember({"three-quarter", "side", "top"}))
+      ->capture_default_str();
+  command->add_flag("--ortho", options->orthographic,
+                    "no perspective: lengths compare all over the picture");
+  command->add_flag("--follow", options->follow, "the camera moves along with the figures");
+  command
+      ->add_option(
+          "--strobe", options->strobeS,
+          "seconds between figures of a picture (default 0.4); in a video, earlier figures stay")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--title", options->title, "text at the top");
+  addReadOptions(*command, options->read);
+}
+
+}  // namespace marey::cli

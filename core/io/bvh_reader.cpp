@@ -336,7 +336,7 @@ SnappedRate rateOfFrameTime(std::string_view text) {
     const double exact = 1.0 / rate;
     // Rounded or cut off: less than one unit of the last digit above, half a one below.
     const double miss = (exact - time) / unit;
-    const bool close = std::abs(exact - time) < 2e-3 * exact;
+    const bool close = std::abs(exact - time) < 5e-3 * exact;
     if (close && miss > -0.5 - 1e-6 && miss < 1.0)
       return {rate, std::abs(exact - time) > 1e-9 * exact};
   }

@@ -65,9 +65,10 @@ std::vector<Clip> fieldClips(const Arrays& arrays, const std::string& origin,
     clip.name = fmt::format("{}_{:04}", std::filesystem::path(origin).stem().string(), n);
     clip.skeleton = std::make_shared<const Skeleton>(moglowSkeleton());
     clip.positions = rebuilt(values.data() + n * frames * kFieldWidth, frames);
-    clip.skeleton = withOffsetsFrom(clip);
     clip.fps = rateIn(arrays, origin, kFieldFps);
     clip.source.path = origin;
+    validate(clip);
+    clip.skeleton = withOffsetsFrom(clip);
     clip.source.format = "npz-features";
     clip.source.fps = clip.fps;
     if (options.unit.empty())

@@ -48,6 +48,7 @@ RootFrame between(const RootFrame& a, const RootFrame& b) {
 /// `steps` further frames after `last`, each the same step as the mean of the latest ones.
 std::vector<RootFrame> continued(const RootFrame& last, const RootFrame& step, int steps) {
   std::vector<RootFrame> out;
+  out.reserve(static_cast<size_t>(steps));
   RootFrame frame = last;
   for (int i = 0; i < steps; ++i) out.push_back(frame = compose(frame, step));
   return out;

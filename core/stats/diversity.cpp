@@ -43,6 +43,7 @@ std::vector<int> spreadIndices(int count, int limit) {
 std::vector<double> pairDistances(const std::vector<Clip>& clips, int maxFrames) {
   requireSameJoints(clips);
   std::vector<Matrix> poses;
+  poses.reserve(clips.size());
   for (const Clip& clip : clips) {
     if (clip.fps != clips.front().fps)
       throwInput({.path = clip.name}, fmt::format("{} fps as the other clips", clips.front().fps),

@@ -117,6 +117,7 @@ FootstepCurve footstepCurve(const std::vector<Clip>& clips, const FootstepOption
   if (clips.empty()) throw InputError({.path = "footsteps"}, "at least one clip", "none");
   if (options.feet.empty()) throw InputError({.path = "footsteps"}, "at least one foot", "none");
   std::vector<FootstepTally> tallies;
+  tallies.reserve(clips.size());
   for (const Clip& clip : clips) tallies.push_back(footstepTally(clip, options));
   return curveOf(footstepTolerances(options), tallies, std::vector<int>(clips.size(), 1));
 }

@@ -32,8 +32,8 @@ std::function<std::vector<double>(const Clip&)> boneReference(const StatisticInp
   const bool known = std::any_of(rest.begin(), rest.end(), [](double m) { return m > 0.0; });
   if (!input.natural && known)
     return [](const Clip& clip) { return skeletonBoneLengths(*clip.skeleton); };
-  const auto mean = meanBoneLengths(input.natural ? *input.natural : *input.clips);
-  return [mean](const Clip&) { return mean; };
+  auto mean = meanBoneLengths(input.natural ? *input.natural : *input.clips);
+  return [mean = std::move(mean)](const Clip&) { return std::vector<double>(mean); };
 }
 
 WeightedValue boneError(const StatisticInput& input) {
@@ -62,10 +62,12 @@ bool canBeDiverse(const StatisticInput& input) {
 WeightedValue diversity(const StatisticInput& input) {
   const auto kept = spreadIndices(static_cast<int>(input.clips->size()), kDiversityClips);
   std::vector<Clip> clips;
+  clips.reserve(kept.size());
   for (int i : kept) clips.push_back((*input.clips)[i]);
   auto distances = std::make_shared<const std::vector<double>>(pairDistances(clips));
   return [=](const Weights& weights) {
     std::vector<int> own;
+    own.reserve(kept.size());
     for (int i : kept) own.push_back(weights.clips[i]);
     return 100.0 * meanPairDistance(*distances, own);
   };
@@ -126,6 +128,7 @@ WeightedValue weightedRatio(const std::vector<Clip>& clips,
                             const std::function<RatioPart(const Clip&)>& part,
                             const std::function<double(double)>& finish) {
   std::vector<RatioPart> parts;
+  parts.reserve(clips.size());
   for (const Clip& clip : clips) parts.push_back(part(clip));
   return [parts, finish](const Weights& weights) {
     double sum = 0.0;

@@ -1,5 +1,6 @@
 // Statistics that compare per-joint distributions with those of natural motion.
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "motion/roles.h"
@@ -11,12 +12,12 @@ namespace marey::stats {
 namespace {
 
 /// Frames of a set that enter a distribution; beyond it every k-th frame does.
-constexpr double kFrameLimit = 8000.0;
+constexpr double kFrameLimit = 5000.0;
 
 int strideFor(const std::vector<Clip>& clips) {
   double frames = 0.0;
   for (const Clip& clip : clips) frames += clip.frameCount();
-  return std::max(1, static_cast<int>(frames / kFrameLimit));
+  return std::max(1, static_cast<int>(std::ceil(frames / kFrameLimit)));
 }
 
 /// samples[joint][clip]
@@ -74,7 +75,7 @@ void addPair(std::vector<Statistic>& list, const std::string& what, const std::s
       {what + "_wasserstein", unit,
        "1-Wasserstein distance between the distributions of " + text +
            " in the clips and in natural motion, mean over joints (of long sets every k-th frame, "
-           "about 8,000 in all).",
+           "about 5,000 in all).",
        "Ramdas, Garcia Trillos, Cuturi 2017", true, applies, [quantities](const auto& input) {
          return distance(input, quantities, &SampleDistance::wasserstein);
        }});
@@ -82,7 +83,7 @@ void addPair(std::vector<Statistic>& list, const std::string& what, const std::s
       {what + "_ks", "",
        "Kolmogorov-Smirnov statistic between the distributions of " + text +
            " in the clips and in natural motion, mean over joints (of long sets every k-th frame, "
-           "about 8,000 in all).",
+           "about 5,000 in all).",
        "Smirnov 1948", true, applies, [quantities](const auto& input) {
          return distance(input, quantities, &SampleDistance::kolmogorov);
        }});

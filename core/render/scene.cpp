@@ -180,7 +180,11 @@ std::vector<Vec3> SceneRenderer::Internals::outline(const std::vector<Figure>& f
     points.insert(points.end(), figure.pose.begin(), figure.pose.end());
     const BodyShape& shape = shapes[figure.motion];
     if (shape.head < 0) continue;
-    points.push_back(headCentre(shape, figure.pose) + Vec3(0, shape.headRadiusM, 0));
+    const Vec3 head = headCentre(shape, figure.pose);
+    for (int axis = 0; axis < 3; ++axis) {
+      points.emplace_back(head + shape.headRadiusM * Vec3::Unit(axis));
+      points.emplace_back(head - shape.headRadiusM * Vec3::Unit(axis));
+    }
   }
   return points;
 }

@@ -1,0 +1,164 @@
+#include "render/video.h"
+
+#include <gtest/gtest.h>
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+}
+
+#include <filesystem>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "render/tiny_clip.h"
+
+namespace marey::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Decoded {
+  AVRational rate{};
+  int width = 0, height = 0, keyFrames = 0;
+  std::string comment;
+  std::vector<int> luma;       ///< at the middle of each frame
+  std::vector<int64_t> times;  ///< in units of 1 / rate
+};
+
+/// Reads a file back with libav's demuxer and decoder.
+Decoded decode(const fs::path& path) {
+  Decoded result;
+  AVFormatContext* file = nullptr;
+  EXPECT_EQ(avformat_open_input(&file, path.c_str(), nullptr, nullptr), 0);
+  EXPECT_GE(avformat_find_stream_info(file, nullptr), 0);
+  const AVStream* stream = file->streams[0];
+  result.rate = stream->avg_frame_rate;
+  if (const auto* tag = av_dict_get(file->metadata, "comment", nullptr, 0))
+    result.comment = tag->value;
+  AVCodecContext* decoder =
+      avcodec_alloc_context3(avcodec_find_decoder(stream->codecpar->codec_id));
+  avcodec_parameters_to_context(decoder, stream->codecpar);
+  EXPECT_EQ(avcodec_open2(decoder, nullptr, nullptr), 0);
+  AVPacket* packet = av_packet_alloc();
+  AVFrame* frame = av_frame_alloc();
+  const auto receive = [&] {
+    while (avcodec_receive_frame(decoder, frame) == 0) {
+      EXPECT_EQ(frame->format, AV_PIX_FMT_YUV420P);
+      result.width = frame->width;
+      result.height = frame->height;
+      result.keyFrames += frame->key_frame;
+      result.luma.push_back(
+          frame->data[0][frame->height / 2 * frame->linesize[0] + frame->width / 2]);
+      result.times.push_back(av_rescale_q(frame->pts, stream->time_base, av_inv_q(result.rate)));
+    }
+  };
+  while (av_read_frame(file, packet) == 0) {
+    avcodec_send_packet(decoder, packet);
+    av_packet_unref(packet);
+    receive();
+  }
+  avcodec_send_packet(decoder, nullptr);
+  receive();
+  av_frame_free(&frame);
+  av_packet_free(&packet);
+  avcodec_free_context(&decoder);
+  avformat_close_input(&file);
+  return result;
+}
+
+class Video : public testing::Test {
+ protected:
+  // One folder per test: tests run side by side.
+  fs::path m_folder =
+      fs::temp_directory_path() /
+      (std::string("marey_video_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  void SetUp() override {
+    fs::remove_all(m_folder);
+    fs::create_directories(m_folder);
+  }
+  void TearDown() override { fs::remove_all(m_folder); }
+};
+
+Image greyFrame(double lightness) {
+  return {64, 48, grey(lightness)};
+}
+
+TEST_F(Video, EveryFrameIsThereInOrderAtTheExactRate) {
+  const VideoFormat format{.width = 64, .height = 48, .fps = 25.0, .keyFrameEvery = 10};
+  VideoWriter writer(m_folder / "grey.mp4", format, {{"seed", "5"}});
+  for (int k = 0; k < 25; ++k) writer.add(greyFrame(k / 24.0));
+  EXPECT_FALSE(fs::exists(m_folder / "grey.mp4")) << "nothing appears before it is whole";
+  writer.finish();
+  const Decoded video = decode(m_folder / "grey.mp4");
+  EXPECT_EQ(video.rate.num, 25 * video.rate.den);
+  EXPECT_EQ(video.width, 64);
+  EXPECT_EQ(video.height, 48);
+  EXPECT_EQ(video.keyFrames, 3);
+  EXPECT_EQ(video.comment, R"({"seed":"5"})");
+  ASSERT_EQ(video.luma.size(), 25U);
+  for (int k = 0; k < 25; ++k) {
+    EXPECT_EQ(video.times[static_cast<size_t>(k)] - video.times[0], k);
+    // Studio range: black is 16, white 235.
+    EXPECT_NEAR(video.luma[static_cast<size_t>(k)], 16.0 + 219.0 * k / 24.0, 4.0) << k;
+  }
+}
+
+TEST_F(Video, FractionalRatesAreKept) {
+  VideoWriter writer(m_folder / "ntsc.mp4", {.width = 64, .height = 48, .fps = 30000.0 / 1001.0});
+  for (int k = 0; k < 3; ++k) writer.add(greyFrame(0.5));
+  writer.finish();
+  const Decoded video = decode(m_folder / "ntsc.mp4");
+  EXPECT_NEAR(av_q2d(video.rate), 30000.0 / 1001.0, 1e-9);
+}
+
+TEST_F(Video, TheSameFramesGiveTheSameBytes) {
+  for (const char* name : {"a.mp4", "b.mp4"}) {
+    VideoWriter writer(m_folder / name, {.width = 64, .height = 48});
+    for (int k = 0; k < 5; ++k) writer.add(greyFrame(k / 5.0));
+    writer.finish();
+  }
+  EXPECT_EQ(readFile(m_folder / "a.mp4"), readFile(m_folder / "b.mp4"));
+}
+
+TEST_F(Video, WrongFormatsAndFramesAreRefused) {
+  EXPECT_THROW(VideoWriter(m_folder / "x.mp4", {.width = 65, .height = 48}), InputError);
+  EXPECT_THROW(VideoWriter(m_folder / "x.mp4", {.width = 64, .height = 48, .fps = 0.0}),
+               InputError);
+  EXPECT_THROW(VideoWriter(m_folder / "x.mp4", {.width = 64, .height = 48, .quality = 60}),
+               InputError);
+  VideoWriter writer(m_folder / "x.mp4", {.width = 64, .height = 48});
+  EXPECT_THROW(writer.add(Image(32, 48)), InputError);
+  EXPECT_THROW(writer.finish(), Error) << "no frame was added";
+  EXPECT_FALSE(fs::exists(m_folder / "x.mp4"));
+}
+
+SceneSpec tinyScene() {
+  SceneSpec scene;
+  SceneMotion motion;
+  motion.clip = std::make_shared<const Clip>(tinyClip(6));
+  scene.motions.push_back(motion);
+  return scene;
+}
+
+TEST_F(Video, ASceneLastsAsLongAsItsLongestMotion) {
+  Progress progress;
+  const VideoFormat format{.width = 64, .height = 48, .fps = 20.0};
+  // Six frames at 10 fps are 0.6 s, twelve frames at 20 fps.
+  EXPECT_EQ(writeSceneVideo(m_folder / "s.mp4", tinyScene(), format, {}, {}, progress), 12);
+  EXPECT_EQ(decode(m_folder / "s.mp4").luma.size(), 12U);
+}
+
+TEST_F(Video, ACancelledVideoLeavesNoFile) {
+  std::stop_source stop;
+  stop.request_stop();
+  Progress progress({}, stop.get_token());
+  EXPECT_THROW(writeSceneVideo(m_folder / "c.mp4", tinyScene(), {.width = 64, .height = 48}, {}, {},
+                               progress),
+               CancelledError);
+  EXPECT_TRUE(fs::is_empty(m_folder));
+}
+
+}  // namespace
+}  // namespace marey::render

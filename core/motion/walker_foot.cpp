@@ -54,8 +54,8 @@ double smoothStep(double u) {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// Quintic from p0 (velocity v0 per unit) to rest at p1. It starts and brakes sharply, as a leg that
-/// is swung does, so that contacts have clear ends.
+/// Quintic from p0 (velocity v0 per unit) to rest at p1. It starts and brakes sharply, as a leg
+/// that is swung does, so that contacts have clear ends.
 Vector3d glide(const Vector3d& p0, const Vector3d& v0, const Vector3d& p1, double u) {
   constexpr double kPull = 5.0;
   constexpr double kBrake = 9.0;

@@ -35,6 +35,7 @@ double poseDistance(const Matrix& a, const Matrix& b, int maxFrames) {
 std::vector<int> spreadIndices(int count, int limit) {
   std::vector<int> out;
   const int kept = std::min(count, std::max(1, limit));
+  out.reserve(static_cast<size_t>(kept));
   for (int i = 0; i < kept; ++i)
     out.push_back(static_cast<int>(static_cast<int64_t>(i) * count / kept));
   return out;

@@ -18,7 +18,6 @@ struct ConvertOptions {
   std::string frames;
   io::WriteOptions write;
   io::ReadOptions read;
-  double fromFps = 0.0;
 };
 
 /// "a:b": frames a to b - 1, from 0; either may be left out. Negative ones count from the end.
@@ -71,7 +70,7 @@ class Converter {
     const bool folder = isFolder(out);
     for (size_t i = 0; i < files.size(); ++i) {
       progress.throwIfCancelled();
-      const std::vector<Clip> clips = io::readClips(files[i], readOptions());
+      const std::vector<Clip> clips = io::readClips(files[i], m_options.read);
       if (!folder && (files.size() > 1 || clips.size() > 1))
         throw UsageError(
             fmt::format("--out: expected a folder for several clips, found '{}'", m_options.out));
@@ -82,12 +81,6 @@ class Converter {
   }
 
  private:
-  io::ReadOptions readOptions() const {
-    io::ReadOptions out = m_options.read;
-    if (m_options.fromFps > 0.0) out.fps = m_options.fromFps;
-    return out;
-  }
-
   fs::path inFolder(const fs::path& folder, const Clip& clip) {
     const std::string extension = extensionFor(m_options.write.format);
     std::string name = clip.name;
@@ -139,9 +132,9 @@ void addConvertCommand(CLI::App& app, Context& context) {
   command->add_option("--up", options->write.up, "up axis to write: y (default) or z");
   command->add_option("--euler-order", options->write.eulerOrder,
                       "order of BVH rotation channels (default: ZXY)");
-  command->add_option("--from-unit", options->read.unit, "unit of the input (default: guessed)");
-  command->add_option("--from-up", options->read.up, "up axis of the input (default: guessed)");
-  command->add_option("--from-fps", options->fromFps, "frame rate of the input")
+  command->add_option("--source-unit", options->read.unit, "unit of the input (default: guessed)");
+  command->add_option("--source-up", options->read.up, "up axis of the input (default: guessed)");
+  command->add_option("--source-fps", options->read.fps, "frame rate of the input")
       ->check(CLI::PositiveNumber);
   command->add_option("--asf", options->read.asf, "skeleton of AMC files");
 }

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "cli/command.h"
+#include "cli/readers.h"
 
 namespace marey::cli {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 struct DoctorOptions {
   std::vector<std::string> inputs;
   io::ReadOptions read;
-  double fps = 0.0;
 };
 
 bool unreadable(const io::DoctorReport& report) {
@@ -21,8 +21,6 @@ bool unreadable(const io::DoctorReport& report) {
 }
 
 void runDoctor(const Context& context, const DoctorOptions& options) {
-  io::ReadOptions read = options.read;
-  if (options.fps > 0.0) read.fps = options.fps;
   const std::vector<std::filesystem::path> files = expandInputs(options.inputs);
   Progress progress = context.progress("examining");
   Json result = {{"files", Json::array()}};
@@ -30,7 +28,7 @@ void runDoctor(const Context& context, const DoctorOptions& options) {
   int failures = 0;
   for (size_t i = 0; i < files.size(); ++i) {
     progress.throwIfCancelled();
-    for (const io::DoctorReport& report : io::examine(files[i], read)) {
+    for (const io::DoctorReport& report : io::examine(files[i], options.read)) {
       result["files"].push_back(io::toJson(report));
       text += io::toText(report);
       if (unreadable(report) && failures++ == 0) firstFailure = report.faults.front().evidence;
@@ -52,10 +50,7 @@ void addDoctorCommand(CLI::App& app, Context& context) {
       app, context, "doctor", "What a motion file is and what is wrong with it",
       "marey doctor walk.bvh --json", [&context, options] { runDoctor(context, *options); });
   command->add_option("inputs", options->inputs, "motion files, folders or @LIST")->required();
-  command->add_option("--unit", options->read.unit,
-                      "unit of the files: m, cm, mm, inch, foot, cmu");
-  command->add_option("--up", options->read.up, "up axis of the files: y or z");
-  command->add_option("--fps", options->fps, "frame rate of the files")->check(CLI::PositiveNumber);
+  addReadOptions(*command, options->read);
   command->add_option("--asf", options->read.asf, "skeleton of AMC files");
 }
 

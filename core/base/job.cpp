@@ -42,7 +42,7 @@ void Job::run(const Work& work, std::stop_token stop) {
           m_status.fraction = fraction;
           if (!message.empty()) m_status.message = message;
         },
-        stop);
+        std::move(stop));
     work(progress);
   } catch (const CancelledError&) {
     end = State::Cancelled;

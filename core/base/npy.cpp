@@ -144,7 +144,7 @@ std::map<std::string, Tensor> parseNpz(std::string_view bytes, const std::string
   for (const auto& [name, content] : parseArchive(bytes, origin)) {
     if (name.empty() || name.back() == '/') continue;
     const std::string key = name.ends_with(".npy") ? name.substr(0, name.size() - 4) : name;
-    out.emplace(key, parseNpy(content, origin + ", array '" + key + "'"));
+    out.emplace(key, parseNpy(content, fmt::format("{}, array '{}'", origin, key)));
   }
   return out;
 }

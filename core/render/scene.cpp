@@ -270,10 +270,14 @@ void SceneRenderer::Internals::castShadows(const std::vector<Figure>& figures) {
 Image SceneRenderer::Internals::picture(const std::vector<Figure>& figures, const Camera& from,
                                         const std::optional<ScaleBar>& placedBar) {
   if (spec.floor) castShadows(figures);
-  Rendered ground = draw({}, true, from);
+  const std::vector<Layer> layers = layersOf(figures);
+  // Solid figures alone need no putting together.
+  const bool onlySolid = layers.size() == 1;
+  Rendered ground = draw(onlySolid ? layers.front() : Layer{}, true, from);
   std::vector<LayerPicture> over;
-  for (const Layer& layer : layersOf(figures)) {
-    if (!layer.figures.empty()) over.push_back({draw(layer, false, from), layer.opacity});
+  for (const Layer& layer : layers) {
+    if (onlySolid || layer.figures.empty()) continue;
+    over.push_back({draw(layer, false, from), layer.opacity});
   }
   composite(ground, over);
   return withOverlay(shrunk(ground), spec, from, placedBar);

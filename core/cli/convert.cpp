@@ -1,3 +1,4 @@
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -28,7 +29,8 @@ struct FrameRange {
 std::optional<int> frameNumber(const std::string& text, const std::string& all) {
   if (text.empty()) return std::nullopt;
   const std::optional<double> value = io::parseNumber(text);
-  if (!value || *value != static_cast<int>(*value))
+  constexpr double kMost = 1e9;
+  if (!value || std::abs(*value) > kMost || *value != std::floor(*value))
     throw UsageError(fmt::format("--frames: expected a:b with whole numbers, found '{}'", all));
   return static_cast<int>(*value);
 }

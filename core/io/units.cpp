@@ -111,8 +111,10 @@ UnitGuess guessUnit(const Skeleton& skeleton) {
 
 UpGuess guessUp(const Clip& clip) {
   const SkeletonRoles roles = rolesOf(*clip.skeleton);
-  if (roles.quadruped || roles.feet.empty() || roles.leftShoulder < 0 || roles.rightShoulder < 0)
-    return {"y", false, "no feet and shoulders known by name: Y up is assumed"};
+  if (roles.feet.empty() || !roles.hasFacing() || roles.leftShoulder < 0 || roles.rightShoulder < 0)
+    return {"y", false, "no feet, hips and shoulders known by name: Y up is assumed"};
+  const std::vector<int> trunk = {roles.leftHip, roles.rightHip, roles.leftShoulder,
+                                  roles.rightShoulder};
   constexpr int kMostFrames = 300;
   const int step = std::max(1, clip.frameCount() / kMostFrames);
   Vec3 body = Vec3::Zero();
@@ -120,11 +122,11 @@ UpGuess guessUp(const Clip& clip) {
     body +=
         meanOf(clip, t, {roles.leftShoulder, roles.rightShoulder}) - meanOf(clip, t, roles.feet);
   if (!(body.norm() > 0.0f) || !body.allFinite())
-    return {"y", false, "feet and shoulders coincide: Y up is assumed"};
+    return {"y", false, "feet and trunk coincide: Y up is assumed"};
   const Vec3 direction = body.normalized();
   const bool zUp = direction.z() > 0.8f;
   return {zUp ? "z" : "y", zUp || direction.y() > 0.8f,
-          fmt::format("from feet to shoulders the mean direction is ({:.2f}, {:.2f}, {:.2f})",
+          fmt::format("from feet to trunk the mean direction is ({:.2f}, {:.2f}, {:.2f})",
                       direction.x(), direction.y(), direction.z())};
 }
 

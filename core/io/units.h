@@ -44,7 +44,8 @@ struct UpGuess {
   std::string evidence;
 };
 
-/// From the mean direction from feet to shoulders over the clip (positions in file axes).
+/// From the mean direction from feet to trunk (hips and shoulders) over the clip (positions in file
+/// axes).
 UpGuess guessUp(const Clip& clip);
 
 /// "y" or "z". Throws UsageError otherwise.

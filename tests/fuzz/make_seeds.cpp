@@ -1,0 +1,99 @@
+// Writes small valid inputs of every fuzz target, from the project's own walker.
+#include <algorithm>
+#include <iostream>
+#include <string>
+
+#include "npz_fuzz_names.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/npy.h"
+#include "io/clip_io.h"
+#include "io/npz_clips.h"
+#include "motion/walker.h"
+
+namespace marey {
+namespace {
+
+namespace fs = std::filesystem;
+
+Clip shortWalk() {
+  const std::vector<RootFrame> path(4);
+  return walk(path, {.fps = 20.0}).clip;
+}
+
+/// The layout that npz_fuzz.cpp describes.
+std::string packed(const std::map<std::string, Tensor>& arrays) {
+  std::string out(1, '\1');
+  for (const auto& [name, tensor] : arrays) {
+    const auto at = std::find(kFuzzNames.begin(), kFuzzNames.end(), name);
+    const std::string npy = serialiseNpy(tensor);
+    if (at == kFuzzNames.end() || npy.size() > 0xFFFF) continue;
+    out += static_cast<char>(at - kFuzzNames.begin());
+    out += static_cast<char>(npy.size() & 0xFFU);
+    out += static_cast<char>(npy.size() >> 8U);
+    out += npy;
+  }
+  return out;
+}
+
+void writeNpzSeeds(const Clip& clip, const fs::path& folder) {
+  io::writeClip(clip, folder / "whole.npz");
+  const std::string archive = readFile(folder / "whole.npz");
+  fs::remove(folder / "whole.npz");
+  writeFileAtomically(folder / "archive", std::string(1, '\0') + archive);
+  writeFileAtomically(folder / "clip", packed(io::arraysOfClip(clip, Json::object())));
+  const std::vector<float> zeros(2 * 3 * 66, 0.0f);
+  writeFileAtomically(folder / "features",
+                      packed({{"clips", Tensor::fromFloats({2, 3, 66}, zeros.data())}}));
+}
+
+void writeBvhSeeds(const Clip& clip, const fs::path& folder) {
+  io::writeClip(clip, folder / "rotations.bvh");
+  Clip positions = clip;
+  positions.transforms.reset();
+  io::writeClip(positions, folder / "positions.bvh", {.eulerOrder = "YXZ"});
+  for (const char* name : {"rotations.bvh", "positions.bvh"})
+    fs::remove(folder / (std::string(name) + ".recipe.json"));
+}
+
+void writeAcclaimSeed(const fs::path& folder) {
+  const std::string asf =
+      ":version 1.10\n:units\n length 0.45\n angle deg\n:root\n order TX TY TZ RX RY RZ\n axis "
+      "XYZ\n"
+      " position 0 0 0\n orientation 0 0 0\n:bonedata\n begin\n name leg\n direction 0 -1 0\n"
+      " length 8\n axis 0 0 20 XYZ\n dof rx ry rz\n limits (-160 20)\n (-70 70)\n (-60 70)\n end\n"
+      ":hierarchy\n begin\n root leg\n end\n";
+  const std::string amc =
+      ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 1 2 3 0 0 0\nleg 1 2 3\n2\nroot 1 2 3 4 5 6\nleg 0 0 "
+      "0\n";
+  writeFileAtomically(folder / "leg", asf + '\0' + amc);
+}
+
+void writeDogSeed(const fs::path& folder) {
+  std::string row = "0.1";
+  for (int i = 1; i < 81; ++i) row += fmt::format(",\t{:.2f}", 0.01 * i);
+  writeFileAtomically(folder / "dog", row + "\n" + row + "\n");
+}
+
+}  // namespace
+}  // namespace marey
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: fuzz_seeds FOLDER\n";
+    return 2;
+  }
+  try {
+    const std::filesystem::path folder = argv[1];
+    const marey::Clip clip = marey::shortWalk();
+    marey::writeBvhSeeds(clip, folder / "bvh");
+    marey::writeNpzSeeds(clip, folder / "npz");
+    marey::writeAcclaimSeed(folder / "asf_amc");
+    marey::writeDogSeed(folder / "dog_text");
+  } catch (const marey::Error& e) {
+    std::cerr << e.what() << "\n";
+    return 1;
+  }
+  return 0;
+}

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "npz_fuzz_names.h"
+#include "pickle_seeds.h"
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -91,6 +92,7 @@ int main(int argc, char** argv) {
     marey::writeNpzSeeds(clip, folder / "npz");
     marey::writeAcclaimSeed(folder / "asf_amc");
     marey::writeDogSeed(folder / "dog_text");
+    marey::writePickleSeeds(folder / "pickle");
   } catch (const marey::Error& e) {
     std::cerr << e.what() << "\n";
     return 1;

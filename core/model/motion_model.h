@@ -79,6 +79,13 @@ class MotionModel {
 
 class TrainableModel;  // model/trainable.h: libtorch inside
 
+/// What a new network must know of its data.
+struct TraineeData {
+  int poseDim = 0, controlDim = 0;
+  std::shared_ptr<const Skeleton> skeleton;
+  Standardiser standardiser;
+};
+
 /// A freshly made network, ready to be trained.
 struct Trainee {
   std::shared_ptr<TrainableModel> net;
@@ -93,9 +100,9 @@ struct ModelFamily {
   std::function<std::unique_ptr<MotionModel>(const TensorFile&, const std::string& origin)> load;
   /// Number of trainable parameters of a configuration, without building data.
   std::function<ModelInfo(const Json& config, const std::string& origin)> describe;
-  /// Random weights for data of the given widths.
-  std::function<Trainee(const Json& modelConfig, const std::string& origin, int poseDim,
-                        int controlDim, uint64_t seed)>
+  /// Random weights from `seed`.
+  std::function<Trainee(const Json& modelConfig, const std::string& origin, const TraineeData& data,
+                        uint64_t seed)>
       makeTrainee;
 };
 

@@ -98,8 +98,9 @@ class Run {
       throw UsageError("--device: expected cpu or cuda, found '" + request.device + "'");
     if (request.device == "cuda" && !torch::cuda::is_available())
       throw UsageError("--device cuda: this libtorch sees no CUDA device");
-    m_trainee = m_family.makeTrainee(request.config.at("model"), request.configOrigin,
-                                     data.poseDim(), data.controlDim(), request.seed);
+    m_trainee = m_family.makeTrainee(
+        request.config.at("model"), request.configOrigin,
+        {data.poseDim(), data.controlDim(), data.skeleton, data.standardiser}, request.seed);
     makeBatches();
   }
 
@@ -137,7 +138,9 @@ class Run {
                  fmt::format("windows longer than the model's context of {} frames",
                              m_trainee.net->context() + m_trainee.net->lookahead()),
                  "{} frames", window);
-    const auto [train, valid] = splitValidation(m_data.train, m_config.validationShare);
+    auto [train, valid] = splitValidation(m_data.train, m_config.validationShare);
+    if (!m_config.useReversed)
+      std::erase_if(train, [](const FeatureSequence& s) { return s.name.ends_with("|reverse"); });
     m_train.emplace(train, m_data.standardiser, window, hop, m_device);
     const int context = static_cast<int>(m_trainee.net->context());
     const int longHop = kEvaluationFrames;

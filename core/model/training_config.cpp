@@ -27,6 +27,7 @@ TrainingConfig trainingConfigFromJson(const Json& value, const std::string& orig
   c.checkpointEvery = reader.optional("checkpoint_every", c.checkpointEvery);
   c.validationShare = reader.optional("validation_share", c.validationShare);
   c.snapshotMinutes = reader.optional("snapshot_minutes", c.snapshotMinutes);
+  c.useReversed = reader.optional("use_reversed", c.useReversed);
   reader.finish();
   require(c.windowS > 0, reader, "window_s", "seconds above zero", c.windowS);
   require(c.hopS > 0, reader, "hop_s", "seconds above zero", c.hopS);
@@ -60,7 +61,8 @@ Json toJson(const TrainingConfig& c) {
           {"steps", c.steps},
           {"checkpoint_every", c.checkpointEvery},
           {"validation_share", c.validationShare},
-          {"snapshot_minutes", c.snapshotMinutes}};
+          {"snapshot_minutes", c.snapshotMinutes},
+          {"use_reversed", c.useReversed}};
 }
 
 }  // namespace marey

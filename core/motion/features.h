@@ -2,10 +2,11 @@
 // in a floor-level frame that follows the character, and that frame's motion as control.
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "motion/clip.h"
 #include "motion/roles.h"
@@ -19,7 +20,7 @@ using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 struct FeatureSpec {
   std::string layout = "positions";  ///< root-frame joint positions, joints x 3
   double fps = 20.0;
-  double rootSigmaS = 0.1;    ///< Gaussian filter of the root's floor position, seconds
+  double rootSigmaS = 0.25;    ///< Gaussian filter of the root's floor position, seconds
   double facingSigmaS = 0.25;  ///< Gaussian filter of the facing direction, seconds
 
   bool operator==(const FeatureSpec&) const = default;

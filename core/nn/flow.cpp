@@ -171,12 +171,13 @@ torch::Tensor Flow::toData(const torch::Tensor& z, const torch::Tensor& conditio
   return x;
 }
 
-void Flow::initialise(const torch::Tensor& x, const torch::Tensor& conditioning, bool whiten) {
+void Flow::initialise(const torch::Tensor& x, const torch::Tensor& conditioning, Start start) {
   const torch::NoGradGuard guard;
   torch::Tensor value = x;
   for (size_t k = 0; k < m_steps.size(); ++k) {
     const Step& step = m_steps[k];
-    if (k == 0 && whiten) {
+    if (start == Start::Reversal) step.linear->assign(torch::eye(m_spec.channels).flip(0));
+    if (k == 0 && start == Start::Whitening) {
       const auto frames = value.flatten(0, 1).to(torch::kFloat64);
       const auto centred = frames - frames.mean(0);
       step.actnorm->bias.copy_(-frames.mean(0));

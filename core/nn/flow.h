@@ -117,9 +117,14 @@ class Flow : public torch::nn::Module {
                        FlowState& state) const;
   torch::Tensor toData(const torch::Tensor& z, const torch::Tensor& conditioning,
                        FlowState& state) const;
-  /// Data-dependent start on frames x [N, 1, D] with conditioning [N, 1, C]: the first step
-  /// becomes PCA whitening when `whiten`, every further actnorm normalises what reaches it.
-  void initialise(const torch::Tensor& x, const torch::Tensor& conditioning, bool whiten);
+  enum class Start {
+    Orthogonal,  ///< random rotations, as published
+    Whitening,   ///< the same, but the first step becomes PCA whitening
+    Reversal,    ///< every linear layer reverses the channels
+  };
+  /// Data-dependent start on frames x [N, 1, D] with conditioning [N, 1, C]: every actnorm
+  /// normalises what reaches it.
+  void initialise(const torch::Tensor& x, const torch::Tensor& conditioning, Start start);
   const FlowSpec& spec() const { return m_spec; }
 
  private:

@@ -33,13 +33,21 @@ void check(const Config& c, const JsonReader& reader) {
   checkRange(reader, "dropout", c.dropout, 0.0, 1.0);
   checkOneOf<3>(reader, "cell", c.cell, {"lstm", "gru", "feedforward"});
   checkOneOf<2>(reader, "base", c.base, {"normal", "student_t"});
-  checkOneOf<2>(reader, "start", c.start, {"orthogonal", "whitening"});
-  checkOneOf<2>(reader, "pose_base", c.poseBase, {"none", "linear"});
+  checkOneOf<3>(reader, "start", c.start, {"orthogonal", "whitening", "reversal"});
+  checkOneOf<3>(reader, "pose_base", c.poseBase, {"none", "linear", "kinematic"});
   if (c.base == "student_t") checkRange(reader, "df", c.df, 1e-3, 1e9);
   if (c.poseBase == "none") return;
   checkRange(reader, "base_order", c.baseOrder, 1, c.tau);
   checkRange(reader, "base_ridge", c.baseRidge, 0.0, 1e6);
   checkRange(reader, "base_floor", c.baseFloor, 1e-12, 1.0);
+  if (c.poseBase != "kinematic") return;
+  checkRange(reader, "base_order", c.baseOrder, 3, c.tau);
+  checkRange(reader, "dropout", c.dropout, 0.0, 0.0);
+  checkRange(reader, "regimes", c.regimes, 1, 4096);
+  checkRange(reader, "regime_shrinkage", c.regimeShrinkage, 0.0, 1e9);
+  checkRange(reader, "foot_clusters", c.footClusters, 1, 4096);
+  checkRange(reader, "net_features", c.netFeatures, 1, c.poseDim * c.baseOrder);
+  checkRange(reader, "contacts", c.contacts, 1, 64);
 }
 
 /// The authors' JSON groups. Dimensions are not in it: they come from the checkpoint.
@@ -93,8 +101,16 @@ Config configFromJson(const Json& value, const std::string& origin) {
   c.start = reader.optional("start", c.start);
   c.poseBase = reader.optional("pose_base", c.poseBase);
   c.baseOrder = reader.optional("base_order", std::min(c.baseOrder, c.tau));
-  c.baseRidge = reader.optional("base_ridge", c.baseRidge);
-  c.baseFloor = reader.optional("base_floor", c.baseFloor);
+  const bool kinematic = c.poseBase == "kinematic";
+  c.baseRidge = reader.optional("base_ridge", kinematic ? 0.028 : c.baseRidge);
+  c.baseFloor = reader.optional("base_floor", kinematic ? 1e-7 : c.baseFloor);
+  if (kinematic) {
+    c.regimes = reader.optional("regimes", c.regimes);
+    c.regimeShrinkage = reader.optional("regime_shrinkage", c.regimeShrinkage);
+    c.footClusters = reader.optional("foot_clusters", c.footClusters);
+    c.netFeatures = reader.optional("net_features", c.netFeatures);
+    c.contacts = reader.optional("contacts", c.contacts);
+  }
   // Facts that conformance files state beside the configuration.
   for (const char* key : {"batch", "frames", "scale", "split", "channels", "parameters"})
     if (reader.has(key)) reader.raw(key);
@@ -122,6 +138,13 @@ Json toJson(const Config& c) {
     out["base_order"] = c.baseOrder;
     out["base_ridge"] = c.baseRidge;
     out["base_floor"] = c.baseFloor;
+  }
+  if (c.poseBase == "kinematic") {
+    out["regimes"] = c.regimes;
+    out["regime_shrinkage"] = c.regimeShrinkage;
+    out["foot_clusters"] = c.footClusters;
+    out["net_features"] = c.netFeatures;
+    out["contacts"] = c.contacts;
   }
   return out;
 }

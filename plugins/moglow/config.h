@@ -20,13 +20,25 @@ struct Config {
   std::string base = "normal";       ///< normal, student_t
   double df = 0.0;                   ///< degrees of freedom of the Student-t base
   double dropout = 0.95;             ///< share of history frames hidden from the nets in training
-  std::string start = "orthogonal";  ///< orthogonal, whitening (data-dependent)
-  std::string poseBase = "none";     ///< none, linear ('MG+')
+  std::string start = "orthogonal";  ///< orthogonal, whitening (data-dependent), reversal
+  std::string poseBase = "none";     ///< none, linear, kinematic ('MG+')
   int baseOrder = 3;                 ///< past frames of the linear base
-  double baseRidge = 1e-4;           ///< ridge strength, relative to the mean square of the inputs
-  double baseFloor = 1e-4;           ///< smallest innovation eigenvalue, relative to the largest
+  /// Ridge strength. linear: relative to the mean square of the inputs; kinematic: as the variance
+  /// of noise on every input, in cm^2 (a strong one keeps free-running motion stable).
+  double baseRidge = 1e-4;
+  double baseFloor = 1e-4;  ///< smallest innovation eigenvalue, relative to the largest
+  // The kinematic base alone:
+  int regimes = 64;               ///< clusters with a regression and covariance of their own
+  double regimeShrinkage = 0.85;  ///< towards the common regression, cm^2 as baseRidge
+  int footClusters = 200;         ///< clusters of a foot's movement that set its gate
+  int netFeatures = 80;           ///< principal components of the history that the nets see
+  int contacts = 4;               ///< feet and toes of the skeleton
 
-  int conditioning() const { return tau * poseDim + (tau + 1 + lookahead) * controlDim; }
+  int conditioning() const {
+    if (poseBase == "kinematic")
+      return netFeatures + 2 * contacts * (baseOrder - 1) + 3 * baseOrder + contacts;
+    return tau * poseDim + (tau + 1 + lookahead) * controlDim;
+  }
   double degreesOfFreedom() const { return base == "student_t" ? df : 0.0; }
 };
 

@@ -1,7 +1,10 @@
 #include "moglow/family.h"
 
+#include <algorithm>
+
 #include "model/weights.h"
 #include "moglow/model.h"
+#include "motion/roles.h"
 
 namespace marey::moglow {
 namespace {
@@ -42,23 +45,41 @@ ModelInfo completed(ModelInfo info, const Config& config) {
   return info;
 }
 
+BodyFacts bodyFacts(const Skeleton* skeleton, const Standardiser& s) {
+  BodyFacts out{.poseMean = s.poseMean,
+                .poseStd = s.poseStd,
+                .controlMean = s.controlMean,
+                .controlStd = s.controlStd};
+  if (skeleton == nullptr) return out;
+  out.parents = skeleton->parents;
+  out.feet = rolesOf(*skeleton).feet;
+  for (const int foot : out.feet) {
+    const auto child = std::find(out.parents.begin(), out.parents.end(), foot);
+    out.toes.push_back(child == out.parents.end() ? out.parents[static_cast<size_t>(foot)]
+                                                  : static_cast<int>(child - out.parents.begin()));
+  }
+  return out;
+}
+
 std::unique_ptr<MotionModel> load(const TensorFile& file, const std::string& origin) {
   ModelInfo info = loadCommon(file, origin);
   const Config config = configFromJson(info.config, origin);
   if (config.poseDim != info.poseDim || config.controlDim != info.controlDim)
     throwInput({.path = origin}, "a configuration of the stored dimensions", "{}/{} beside {}/{}",
                config.poseDim, config.controlDim, info.poseDim, info.controlDim);
-  auto net = std::make_shared<Net>(config, 0);
+  auto net = std::make_shared<Net>(config, bodyFacts(info.skeleton.get(), info.standardiser), 0);
   loadWeights(*net, file, origin);
   return std::make_unique<Model>(completed(std::move(info), config), std::move(net));
 }
 
-Trainee makeTrainee(const Json& modelConfig, const std::string& origin, int poseDim, int controlDim,
+Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const TraineeData& data,
                     uint64_t seed) {
   Config config = configFromJson(modelConfig, origin);
-  config.poseDim = poseDim;
-  config.controlDim = controlDim;
-  return {std::make_shared<Net>(config, seed), toJson(config)};
+  config.poseDim = data.poseDim;
+  config.controlDim = data.controlDim;
+  const BodyFacts body = bodyFacts(data.skeleton.get(), data.standardiser);
+  config.contacts = 2 * static_cast<int>(body.feet.size());
+  return {std::make_shared<Net>(config, body, seed), toJson(config)};
 }
 
 }  // namespace

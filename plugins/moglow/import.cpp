@@ -96,7 +96,7 @@ std::unique_ptr<MotionModel> importCheckpoint(const std::string& checkpoint, con
     if (name.find(".actnorm.") != std::string::npos) plain.shape = {tensor.count()};
     file.tensors[key] = std::move(plain);
   }
-  auto net = std::make_shared<Net>(config, 0);
+  auto net = std::make_shared<Net>(config, BodyFacts{}, 0);
   loadWeights(*net, file, checkpoint);
   ModelInfo info;
   info.family = "moglow";

@@ -1,57 +1,73 @@
 #include "moglow/linear_base.h"
 
-#include <cmath>
-
 #include "nn/flow.h"
 
 namespace marey::moglow {
 
-LinearBase::LinearBase(int64_t poseDim, int64_t controlDim, int64_t order)
-    : m_poseDim(poseDim), m_controlDim(controlDim), m_order(order) {
-  poseWeight = register_buffer("pose_weight", torch::zeros({poseDim, order * poseDim}));
-  controlWeight = register_buffer("control_weight", torch::zeros({poseDim, 2 * controlDim}));
-  bias = register_buffer("bias", torch::zeros({poseDim}));
-  whiten = register_buffer("whiten", torch::eye(poseDim));
-  unwhiten = register_buffer("unwhiten", torch::eye(poseDim));
-  logDetValue = register_buffer("log_det", torch::zeros({}));
+LinearBase::LinearBase(const Config& c)
+    : m_poseDim(c.poseDim),
+      m_controlDim(c.controlDim),
+      m_tau(c.tau),
+      m_order(c.baseOrder),
+      m_ridge(c.baseRidge),
+      m_floor(c.baseFloor) {
+  m_weight =
+      register_buffer("weight", torch::zeros({m_poseDim, m_order * m_poseDim + 2 * m_controlDim}));
+  m_bias = register_buffer("bias", torch::zeros({m_poseDim}));
+  m_whiten = register_buffer("whiten", torch::eye(m_poseDim));
+  m_unwhiten = register_buffer("unwhiten", torch::eye(m_poseDim));
+  m_logDet = register_buffer("log_det", torch::zeros({}));
+  m_historyMean = register_buffer("history_mean", torch::zeros({m_poseDim}));
+  m_historyWhiten = register_buffer("history_whiten", torch::eye(m_poseDim));
 }
 
-double LinearBase::fit(const torch::Tensor& targets, const torch::Tensor& pasts,
-                       const torch::Tensor& controls, double ridge, double floor) {
-  const torch::NoGradGuard guard;
-  const auto n = targets.size(0);
-  const auto inputs =
-      torch::cat({pasts, controls, torch::ones({n, 1}, pasts.options())}, 1).to(torch::kFloat64);
-  const auto y = targets.to(torch::kFloat64);
-  const auto gram = inputs.t().matmul(inputs) / n;
-  // The intercept is not penalised.
-  const auto penalty =
-      torch::full({inputs.size(1)}, ridge * gram.diagonal().mean().item<double>(), torch::kFloat64);
-  penalty[-1] = 0.0;
-  const auto solution =
-      torch::linalg_solve(gram + torch::diag(penalty), inputs.t().matmul(y) / n).t();
-  const auto residual = y - inputs.matmul(solution.t());
-  const auto w = nn::whitening(residual.t().matmul(residual) / n, floor);
-
-  poseWeight.copy_(solution.narrow(1, 0, m_order * m_poseDim));
-  controlWeight.copy_(solution.narrow(1, m_order * m_poseDim, 2 * m_controlDim));
-  bias.copy_(solution.select(1, -1));
-  whiten.copy_(w);
-  unwhiten.copy_(torch::linalg_inv(w));
-  logDetValue.copy_(std::get<1>(torch::linalg_slogdet(w)));
-  const auto density = nn::baseLogDensity(residual.matmul(w.t()), 0.0);
-  return density.mean().item<double>() + std::get<1>(torch::linalg_slogdet(w)).item<double>();
-}
-
-torch::Tensor LinearBase::predict(const torch::Tensor& history, const torch::Tensor& controlWindow,
-                                  int64_t tau) const {
-  std::vector<torch::Tensor> pasts, controls;
+torch::Tensor LinearBase::regressors(const BaseInput& input) const {
+  std::vector<torch::Tensor> parts;
   for (int64_t lag = 1; lag <= m_order; ++lag)
-    pasts.push_back(history.narrow(-1, (tau - lag) * m_poseDim, m_poseDim));
+    parts.push_back(input.history.narrow(-1, (m_tau - lag) * m_poseDim, m_poseDim));
   for (int64_t lag = 0; lag <= 1; ++lag)
-    controls.push_back(controlWindow.narrow(-1, (tau - lag) * m_controlDim, m_controlDim));
-  return torch::cat(pasts, -1).matmul(poseWeight.t()) +
-         torch::cat(controls, -1).matmul(controlWeight.t()) + bias;
+    parts.push_back(input.control.narrow(-1, (m_tau - lag) * m_controlDim, m_controlDim));
+  return torch::cat(parts, -1);
+}
+
+Foresight LinearBase::foresee(const BaseInput& input) const {
+  auto history = input.history.view({-1, m_tau, m_poseDim});
+  history = (history - m_historyMean).matmul(m_historyWhiten.t());
+  if (input.keep.defined()) history = history * input.keep.unsqueeze(-1);
+  return {torch::cat({history.flatten(1), input.control}, -1),
+          {regressors(input).matmul(m_weight.t()) + m_bias}};
+}
+
+PoseBase::Innovation LinearBase::toInnovation(const torch::Tensor& pose, const Foresight& f) const {
+  return {(pose - f.parts[0]).matmul(m_whiten.t()), m_logDet.expand({pose.size(0)})};
+}
+
+torch::Tensor LinearBase::toPose(const torch::Tensor& innovation, const Foresight& f) const {
+  return innovation.matmul(m_unwhiten.t()) + f.parts[0];
+}
+
+void LinearBase::fit(const torch::Tensor& poses, const BaseInput& input) {
+  const torch::NoGradGuard guard;
+  const auto n = poses.size(0);
+  const auto y = poses.to(torch::kFloat64),
+             last =
+                 input.history.narrow(-1, (m_tau - 1) * m_poseDim, m_poseDim).to(torch::kFloat64);
+  auto x = regressors(input).to(torch::kFloat64);
+  const auto xMean = x.mean(0), yMean = y.mean(0);
+  x = x - xMean;
+  const auto gram = x.t().matmul(x) / n;
+  const auto penalty = m_ridge * gram.diagonal().mean() * torch::eye(x.size(1), gram.options());
+  const auto weight = torch::linalg_solve(gram + penalty, x.t().matmul(y - yMean) / n).t();
+  const auto residual = y - yMean - x.matmul(weight.t());
+  const auto w = nn::whitening(residual.t().matmul(residual) / n, m_floor);
+  m_weight.copy_(weight);
+  m_bias.copy_(yMean - weight.matmul(xMean));
+  m_whiten.copy_(w);
+  m_unwhiten.copy_(torch::linalg_inv(w));
+  m_logDet.copy_(std::get<1>(torch::linalg_slogdet(w)));
+  const auto mean = last.mean(0), centred = last - mean;
+  m_historyMean.copy_(mean);
+  m_historyWhiten.copy_(nn::whitening(centred.t().matmul(centred) / n, 1e-4));
 }
 
 }  // namespace marey::moglow

@@ -1,44 +1,35 @@
-// The linear autoregressive base of 'MG+': one more exact layer of the flow. The flow above it
-// models what a linear-Gaussian walker cannot foresee.
+// The linear autoregressive base:
 //
 //   e_t = W (x_t - A [x_{t-1}, ..., x_{t-order}] - B [c_t, c_{t-1}] - b)
 //
-// A, B, b are fitted by ridge regression, W whitens the innovation (eigenvalues floored).
+// A, B, b are fitted by ridge regression, W whitens the innovation (eigenvalues floored). The
+// nets see the PCA-whitened history, with frame dropout, and the control.
 #pragma once
 
 #include <cstdint>
 
-#include "nn/torch.h"
+#include "moglow/pose_base.h"
 
 namespace marey::moglow {
 
-class LinearBase : public torch::nn::Module {
+class LinearBase : public PoseBase {
  public:
-  LinearBase(int64_t poseDim, int64_t controlDim, int64_t order);
-
-  /// Fits on rows of standardised data: targets [N, D], pasts [N, order * D] (newest first),
-  /// controls [N, 2 * C] (current first). Accumulated in float64.
-  /// Returns the mean log-density of the linear-Gaussian model on these rows, in nats.
-  double fit(const torch::Tensor& targets, const torch::Tensor& pasts,
-             const torch::Tensor& controls, double ridge, double floor);
-
-  /// history [B, T, tau * D] oldest first, controlWindow [B, T, (tau + 1 + lookahead) * C]:
-  /// the predicted pose [B, T, D].
-  torch::Tensor predict(const torch::Tensor& history, const torch::Tensor& controlWindow,
-                        int64_t tau) const;
-  torch::Tensor toInnovation(const torch::Tensor& residual) const {
-    return residual.matmul(whiten.t());
-  }
-  torch::Tensor toResidual(const torch::Tensor& innovation) const {
-    return innovation.matmul(unwhiten.t());
-  }
-  const torch::Tensor& logDet() const { return logDetValue; }
-
-  torch::Tensor poseWeight, controlWeight, bias;  ///< [D, order D], [D, 2 C], [D]
-  torch::Tensor whiten, unwhiten, logDetValue;    ///< [D, D], [D, D], []
+  explicit LinearBase(const Config& config);
+  Foresight foresee(const BaseInput& input) const override;
+  Innovation toInnovation(const torch::Tensor& pose, const Foresight& foresight) const override;
+  torch::Tensor toPose(const torch::Tensor& innovation, const Foresight& foresight) const override;
+  void fit(const torch::Tensor& poses, const BaseInput& input) override;
 
  private:
-  int64_t m_poseDim, m_controlDim, m_order;
+  /// [N, order * D + 2 C]: newest pose first, then the present and the last control.
+  torch::Tensor regressors(const BaseInput& input) const;
+
+  int64_t m_poseDim, m_controlDim, m_tau, m_order;
+  double m_ridge, m_floor;
+  torch::Tensor m_weight, m_bias;                ///< [D, order D + 2 C], [D]
+  torch::Tensor m_whiten, m_unwhiten;            ///< [D, D]
+  torch::Tensor m_logDet;                        ///< []
+  torch::Tensor m_historyMean, m_historyWhiten;  ///< [D], [D, D]
 };
 
 }  // namespace marey::moglow

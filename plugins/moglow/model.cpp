@@ -69,7 +69,7 @@ SequenceScore Model::observe(RolloutState& state, const Matrix& poses,
   const auto x = (toTensor(poses).unsqueeze(0) - m_poseMean) / m_poseStd;
   const auto control = (toTensor(controls).unsqueeze(0) - m_controlMean) / m_controlStd;
   const auto all = torch::cat({rollout.history, x}, 1);
-  const auto latent = m_net->toLatent(x, m_net->contextOf(all, control), {}, rollout.flow);
+  const auto latent = m_net->toLatent(x, m_net->contextOf(all, control), rollout.flow);
   rollout.history = all.narrow(1, all.size(1) - m_info.context, m_info.context);
   const auto density = (nn::baseLogDensity(latent.value, baseDegreesOfFreedom()) + latent.logDet)
                            .to(torch::kFloat64)

@@ -2,11 +2,14 @@
 
 #include <ATen/CPUGeneratorImpl.h>
 
+#include "moglow/kinematic_base.h"
+#include "moglow/linear_base.h"
+
 namespace marey::moglow {
 namespace {
 
-/// Frames that data-dependent starts look at: enough for stable covariances, small in memory.
-constexpr int64_t kActnormFrames = 4096;
+/// Frames that data-dependent starts look at: enough for stable moments, small in memory.
+constexpr int64_t kStartFrames = 4096;
 
 nn::FlowSpec flowSpec(const Config& c) {
   return {.channels = c.poseDim,
@@ -16,109 +19,140 @@ nn::FlowSpec flowSpec(const Config& c) {
           .net = {.cell = c.cell, .hidden = c.hidden, .layers = c.layers}};
 }
 
+nn::Flow::Start startOf(const std::string& name) {
+  if (name == "whitening") return nn::Flow::Start::Whitening;
+  return name == "reversal" ? nn::Flow::Start::Reversal : nn::Flow::Start::Orthogonal;
+}
+
 /// Sliding windows of `width` rows: [B, N, F] -> [B, N - width + 1, width * F], oldest first.
 torch::Tensor slidingWindows(const torch::Tensor& rows, int64_t width) {
   return rows.unfold(1, width, 1).transpose(2, 3).flatten(2);
 }
 
+/// The base works frame by frame: [B, T, F] -> [B * T, F].
+BaseInput flattened(const Net::Context& c) {
+  return {c.history.flatten(0, 1), c.control.flatten(0, 1),
+          c.keep.defined() ? c.keep.flatten(0, 1) : c.keep};
+}
+
 }  // namespace
 
-Net::Net(const Config& config, uint64_t seed) : m_config(config) {
+std::shared_ptr<PoseBase> makePoseBase(const Config& config, const BodyFacts& body) {
+  if (config.poseBase == "linear") return std::make_shared<LinearBase>(config);
+  if (config.poseBase == "kinematic") return std::make_shared<KinematicBase>(config, body);
+  return nullptr;
+}
+
+Net::Net(const Config& config, const BodyFacts& body, uint64_t seed) : m_config(config) {
   auto generator = at::detail::createCPUGenerator(seed);
   m_flow = register_module("flow", std::make_shared<nn::Flow>(flowSpec(config), generator));
-  if (config.poseBase == "none") return;
-  m_base = register_module(
-      "base", std::make_shared<LinearBase>(config.poseDim, config.controlDim, config.baseOrder));
-  m_historyMean = register_buffer("history_mean", torch::zeros({config.poseDim}));
-  m_historyWhiten = register_buffer("history_whiten", torch::eye(config.poseDim));
+  m_base = makePoseBase(config, body);
+  if (m_base) register_module("base", m_base);
 }
 
 Net::Context Net::contextOf(const torch::Tensor& poses, const torch::Tensor& controls) const {
-  const int64_t past = poses.size(1) - 1;
-  return {slidingWindows(poses.narrow(1, 0, past), m_config.tau),
-          slidingWindows(controls, m_config.tau + 1 + m_config.lookahead)};
+  return {slidingWindows(poses.narrow(1, 0, poses.size(1) - 1), m_config.tau),
+          slidingWindows(controls, m_config.tau + 1 + m_config.lookahead),
+          {}};
 }
 
-torch::Tensor Net::conditioning(const Context& context, const torch::Tensor& keep) const {
-  torch::Tensor history = context.history;
-  if (m_base || keep.defined()) {
-    history = history.unflatten(-1, at::IntArrayRef{m_config.tau, m_config.poseDim});
-    if (m_base) history = (history - m_historyMean).matmul(m_historyWhiten.t());
-    if (keep.defined()) history = history * keep.unsqueeze(-1);
-    history = history.flatten(-2);
-  }
-  return torch::cat({history, context.control}, -1);
+torch::Tensor Net::plainConditioning(const Context& context) const {
+  if (!context.keep.defined()) return torch::cat({context.history, context.control}, -1);
+  const auto frames =
+      context.history.unflatten(-1, at::IntArrayRef{m_config.tau, m_config.poseDim});
+  return torch::cat({(frames * context.keep.unsqueeze(-1)).flatten(-2), context.control}, -1);
 }
 
 nn::Transformed Net::toLatent(const torch::Tensor& x, const Context& context,
-                              const torch::Tensor& keep, nn::FlowState& state) const {
-  const auto seen = conditioning(context, keep);
-  if (!m_base) return m_flow->toLatent(x, seen, state);
-  const auto e =
-      m_base->toInnovation(x - m_base->predict(context.history, context.control, m_config.tau));
-  auto out = m_flow->toLatent(e, seen, state);
-  out.logDet = out.logDet + m_base->logDet();
+                              nn::FlowState& state) const {
+  if (!m_base) return m_flow->toLatent(x, plainConditioning(context), state);
+  const int64_t batch = x.size(0), frames = x.size(1);
+  const Foresight foresight = m_base->foresee(flattened(context));
+  const auto e = m_base->toInnovation(x.flatten(0, 1), foresight);
+  auto out = m_flow->toLatent(e.value.view({batch, frames, -1}),
+                              foresight.features.view({batch, frames, -1}), state);
+  out.logDet = out.logDet + e.logDet.view({batch, frames});
   return out;
 }
 
 torch::Tensor Net::toData(const torch::Tensor& z, const Context& context,
                           nn::FlowState& state) const {
-  const auto x = m_flow->toData(z, conditioning(context, {}), state);
-  if (!m_base) return x;
-  return m_base->toResidual(x) + m_base->predict(context.history, context.control, m_config.tau);
+  if (!m_base) return m_flow->toData(z, plainConditioning(context), state);
+  const int64_t batch = z.size(0), frames = z.size(1);
+  const Foresight foresight = m_base->foresee(flattened(context));
+  const auto e = m_flow->toData(z, foresight.features.view({batch, frames, -1}), state);
+  return m_base->toPose(e.flatten(0, 1), foresight).view({batch, frames, -1});
 }
 
 torch::Tensor Net::logLikelihood(const TrainingBatch& batch, at::Generator* dropout) {
   const int64_t frames = batch.pose.size(1) - m_config.tau - m_config.lookahead;
   const auto poses = batch.pose.narrow(1, 0, m_config.tau + frames);
-  torch::Tensor keep;
+  Context context = contextOf(poses, batch.control);
   if (dropout != nullptr && m_config.dropout > 0.0) {
     // Drawn on the CPU, so that a device changes no batch.
     const auto uniform = torch::rand({batch.pose.size(0), frames, m_config.tau}, *dropout);
-    keep = uniform.ge(m_config.dropout).to(batch.pose.options());
+    context.keep = uniform.ge(m_config.dropout).to(batch.pose.options());
   }
   nn::FlowState state;
-  const auto latent =
-      toLatent(poses.narrow(1, m_config.tau, frames), contextOf(poses, batch.control), keep, state);
+  const auto latent = toLatent(poses.narrow(1, m_config.tau, frames), context, state);
   return nn::baseLogDensity(latent.value, m_config.degreesOfFreedom()) + latent.logDet;
+}
+
+Net::Context Net::contextAt(const TrainingFrames& frames, const torch::Tensor& rows) const {
+  std::vector<torch::Tensor> poses, controls;
+  for (int64_t offset = -m_config.tau; offset <= m_config.lookahead; ++offset) {
+    if (offset < 0) poses.push_back(frames.pose.index_select(0, rows + offset));
+    controls.push_back(frames.control.index_select(0, rows + offset));
+  }
+  return {torch::cat(poses, 1).unsqueeze(1), torch::cat(controls, 1).unsqueeze(1), {}};
 }
 
 Json Net::initialise(const TrainingFrames& frames) {
   const torch::NoGradGuard guard;
   Json facts = Json::object();
-  const auto rows = [](const torch::Tensor& values, const torch::Tensor& index) {
-    return values.index_select(0, index);
+  // The floor that every flow has to beat is stated with every model, whatever its base.
+  Config floorConfig = m_config;
+  floorConfig.baseOrder = std::min(3, m_config.tau);
+  floorConfig.baseRidge = 1e-4;
+  floorConfig.baseFloor = 1e-4;
+  const auto fitted = [&](PoseBase& base) {
+    const auto context = contextAt(frames, frames.usable);
+    const auto poses = frames.pose.index_select(0, frames.usable);
+    base.fit(poses, flattened(context));
   };
+  const auto meanNats = [&](PoseBase& base) {
+    const int64_t count = std::min<int64_t>(8 * kStartFrames, frames.usable.size(0));
+    const auto rows = frames.usable.index_select(
+        0, (torch::arange(count, torch::kFloat64) * frames.usable.size(0) / count)
+               .to(torch::kInt64)
+               .to(frames.usable.device()));
+    const auto foresight = base.foresee(flattened(contextAt(frames, rows)));
+    const auto e = base.toInnovation(frames.pose.index_select(0, rows), foresight);
+    return (nn::baseLogDensity(e.value, 0.0) + e.logDet).mean().item<double>();
+  };
+  LinearBase floor(floorConfig);
+  floor.to(frames.pose.device());
+  fitted(floor);
+  facts["linear_gaussian_nats_per_frame"] = meanNats(floor);
   if (m_base) {
-    std::vector<torch::Tensor> pasts;
-    for (int64_t lag = 1; lag <= m_config.baseOrder; ++lag)
-      pasts.push_back(rows(frames.pose, frames.usable - lag));
-    const auto controls = torch::cat(
-        {rows(frames.control, frames.usable), rows(frames.control, frames.usable - 1)}, 1);
-    facts["linear_gaussian_train_nats_per_frame"] =
-        m_base->fit(rows(frames.pose, frames.usable), torch::cat(pasts, 1), controls,
-                    m_config.baseRidge, m_config.baseFloor);
-    const auto mean = frames.pose.mean(0);
-    const auto centred = (frames.pose - mean).to(torch::kFloat64);
-    m_historyMean.copy_(mean);
-    m_historyWhiten.copy_(nn::whitening(centred.t().matmul(centred) / centred.size(0), 1e-4));
+    fitted(*m_base);
+    facts["base_nats_per_frame"] = meanNats(*m_base);
   }
   // A fixed, even choice of frames, each as a sequence of one.
-  const int64_t count = std::min<int64_t>(kActnormFrames, frames.usable.size(0));
-  const auto chosen = frames.usable.index_select(
+  const int64_t count = std::min<int64_t>(kStartFrames, frames.usable.size(0));
+  const auto rows = frames.usable.index_select(
       0, (torch::arange(count, torch::kFloat64) * frames.usable.size(0) / count)
              .to(torch::kInt64)
              .to(frames.usable.device()));
-  std::vector<torch::Tensor> pose, control;
-  for (int64_t offset = -m_config.tau; offset <= m_config.lookahead; ++offset) {
-    if (offset <= 0) pose.push_back(rows(frames.pose, chosen + offset));
-    control.push_back(rows(frames.control, chosen + offset));
+  const auto context = contextAt(frames, rows);
+  const auto x = frames.pose.index_select(0, rows);
+  if (!m_base) {
+    m_flow->initialise(x.unsqueeze(1), plainConditioning(context), startOf(m_config.start));
+    return facts;
   }
-  const auto context = contextOf(torch::stack(pose, 1), torch::stack(control, 1));
-  auto x = rows(frames.pose, chosen).unsqueeze(1);
-  if (m_base)
-    x = m_base->toInnovation(x - m_base->predict(context.history, context.control, m_config.tau));
-  m_flow->initialise(x, conditioning(context, {}), m_config.start == "whitening");
+  const Foresight foresight = m_base->foresee(flattened(context));
+  m_flow->initialise(m_base->toInnovation(x, foresight).value.unsqueeze(1),
+                     foresight.features.unsqueeze(1), startOf(m_config.start));
   return facts;
 }
 

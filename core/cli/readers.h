@@ -1,0 +1,19 @@
+// Reading many clips for a command.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "base/job.h"
+#include "cli/command.h"
+#include "io/clip_io.h"
+
+namespace marey::cli {
+
+/// --unit, --up and --source-fps, which override what readers find or guess.
+void addReadOptions(CLI::App& command, io::ReadOptions& options);
+
+/// Every clip of the files, in order. Throws InputError, CancelledError.
+std::vector<Clip> readAll(const std::vector<std::filesystem::path>& files, const io::ReadOptions& options, Progress& progress);
+
+}  // namespace marey::cli

@@ -1,0 +1,59 @@
+// marey train: a model from a configuration and a data set.
+#include <memory>
+
+#include "cli/command.h"
+#include "families.h"
+#include "model/trainer.h"
+
+namespace marey::cli {
+namespace {
+
+struct Options {
+  std::string config, data;
+  TrainRequest request;
+  int64_t steps = 0;
+  double minutes = 0.0;
+};
+
+Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+void run(Options& o, const Context& context) {
+  o.request.config = readJson(o.config);
+  o.request.configOrigin = o.config;
+  o.request.seed = context.seed;
+  o.request.command = context.commandLine;
+  if (o.steps > 0) o.request.steps = o.steps;
+  if (o.minutes > 0.0) o.request.minutes = o.minutes;
+  const DataSet data = readDataSet(o.data);
+  Progress progress = context.progress("train");
+  const TrainResult result = train(data, o.request, modelFamilies(), progress);
+  progress.report(1.0, fmt::format("step {}", result.steps));
+  const Json json = {{"steps", result.steps},
+                     {"train_bits_per_frame", finiteOrNull(result.trainBitsPerFrame)},
+                     {"valid_bits_per_frame", finiteOrNull(result.validBitsPerFrame)},
+                     {"test_nats_per_frame", finiteOrNull(result.testNatsPerFrame)},
+                     {"best", result.best.string()},
+                     {"last", result.last.string()}};
+  context.print(json, fmt::format("{} steps; {:.1f} bits per frame in training, {:.1f} at best in validation; held-out clips "
+                                  "{:.1f} nats per frame (poses in metres)\n{}",
+                                  result.steps, result.trainBitsPerFrame, result.validBitsPerFrame, result.testNatsPerFrame, result.best.string()));
+}
+
+}  // namespace
+
+void addTrainCommand(CLI::App& app, Context& context) {
+  auto o = std::make_shared<Options>();
+  auto* command = addCommand(app, context, "train", "Train a model by maximum likelihood",
+                             "marey train resources/models/moglow-small.json --data walk.marey --out runs/small --minutes 60",
+                             [o, &context] { run(*o, context); });
+  command->add_option("CONFIG", o->config, "Hyper-parameters (JSON)")->required();
+  command->add_option("--data", o->data, "Data set made by `marey prepare`")->required();
+  command->add_option("--out", o->request.run, "Folder of the run")->required();
+  command->add_option("--steps", o->steps, "End at this step (0: as the configuration says)")->check(CLI::NonNegativeNumber);
+  command->add_option("--minutes", o->minutes, "End after this much training time, earlier runs included (0: no limit)")->check(CLI::NonNegativeNumber);
+  command->add_flag("--resume", o->request.resume, "Go on with the run in --out, with the same batches as if unbroken");
+  command->add_option("--init", o->request.init, "Start from the weights of this model");
+  command->add_option("--device", o->request.device, "cpu or cuda")->capture_default_str();
+}
+
+}  // namespace marey::cli

@@ -1,0 +1,77 @@
+// The kinematic base. Against the linear one it adds three things that a linear-Gaussian model
+// cannot express and that a network learns slowly:
+//
+//   1. The history is moved into the present root frame (the control says how), so that a planted
+//      foot has not moved.
+//   2. The pose is expressed in the coordinates of bone_chart.h: constant bones and planted feet
+//      are plain there. How firmly a foot is held, and its scale, are looked up by clusters of its
+//      own recent movement.
+//   3. The rest is a ridge regression with a covariance per regime (clusters of the movement of
+//      feet and control), shrunk towards the common one.
+//
+// Everything depends on history and control alone, so the layer is exactly invertible and its
+// log-determinant is known. Inside, lengths are centimetres.
+#pragma once
+
+#include "moglow/bone_chart.h"
+#include "moglow/pose_base.h"
+
+namespace marey::moglow {
+
+class KinematicBase : public PoseBase {
+ public:
+  /// Throws InputError without a skeleton that has feet, or with other than three controls.
+  KinematicBase(const Config& config, const BodyFacts& body);
+  Foresight foresee(const BaseInput& input) const override;
+  Innovation toInnovation(const torch::Tensor& pose, const Foresight& foresight) const override;
+  torch::Tensor toPose(const torch::Tensor& innovation, const Foresight& foresight) const override;
+  void fit(const torch::Tensor& poses, const BaseInput& input) override;
+
+  /// Past frames of movement, newest first, in the present root frame.
+  struct Past {
+    torch::Tensor poses;    ///< [N, order, J, 3], cm
+    torch::Tensor control;  ///< [N, 3 * order], newest first; cm, cm, rad
+  };
+
+ private:
+  Past pastOf(const BaseInput& input) const;
+  torch::Tensor toCentimetres(const torch::Tensor& pose) const;  ///< [N, D] -> [N, J, 3]
+  torch::Tensor regressors(const Past& past) const;
+  torch::Tensor richRegressors(const Past& past) const;
+  torch::Tensor footSpeeds(const Past& past) const;
+  torch::Tensor footFeatures(const Past& past, size_t foot) const;
+  torch::Tensor regimeFeatures(const Past& past) const;
+  torch::Tensor netFeatures(const Past& past, const torch::Tensor& rich) const;
+  torch::Tensor foreseenPose(const Past& past) const;
+  FootGate gateOf(const Past& past) const;
+  torch::Tensor baseScale(const Past& past, size_t foot) const;
+  BoneChart chart() const;
+
+  void fitChart(const torch::Tensor& pose);
+  void fitForeseen(const torch::Tensor& pose, const Past& past);
+  void fitGate(const torch::Tensor& pose, const Past& past);
+  void fitRegimes(const torch::Tensor& local, const Past& past);
+  void fitWhitening(const torch::Tensor& residual, const torch::Tensor& regime);
+  void fitNetFeatures(const Past& past);
+
+  Config m_config;
+  std::vector<int64_t> m_parents, m_feet, m_toes, m_contacts;
+  std::vector<float> m_sides;  ///< +1 for a left foot, -1 for a right one
+  torch::Tensor m_order;       ///< [D]: feet's held coordinates first
+  torch::Tensor m_orderBack;
+  // Standardiser, in metres.
+  torch::Tensor m_poseMean, m_poseStd, m_controlMean, m_controlStd;
+  // Chart.
+  torch::Tensor m_lengths, m_axes, m_chartSides;
+  // Foreseen pose.
+  torch::Tensor m_foreseenMean, m_foreseenWeight, m_foreseenBias;
+  // Gate: clusters of a foot's movement.
+  torch::Tensor m_footCentres, m_footHold, m_footScale;
+  // Regimes.
+  torch::Tensor m_regimeCentres, m_richMean, m_richWeight, m_factor, m_factorInverse,
+      m_factorLogDet;
+  // What the nets see.
+  torch::Tensor m_netMean, m_netProjection, m_speedScale, m_controlScale;
+};
+
+}  // namespace marey::moglow

@@ -1,0 +1,227 @@
+// The fit of the kinematic base: closed forms and k-means, in float64 where sums are long.
+#include <algorithm>
+
+#include "base/random.h"
+#include "moglow/kinematic_base.h"
+
+namespace marey::moglow {
+namespace {
+
+constexpr int64_t kChunk = 32768;        ///< rows at a time: bounds the memory
+constexpr int64_t kClusterRows = 40000;  ///< rows that k-means looks at
+constexpr int kClusterRounds = 40;
+constexpr double kPriorFrames = 200.0;  ///< weight of the common covariance in a regime's
+
+/// Lloyd's k-means from a fixed random choice of rows.
+torch::Tensor clusterCentres(const torch::Tensor& features, int64_t count) {
+  std::vector<int64_t> rows;
+  const int64_t total = features.size(0);
+  for (int64_t i = 0; i < std::min(kClusterRows, total); ++i)
+    rows.push_back(std::min(
+        total - 1,
+        static_cast<int64_t>(uniformAt({.stage = RandomStage::Weights}, static_cast<uint32_t>(i)) *
+                             static_cast<double>(total))));
+  const auto sample = features.index_select(0, torch::tensor(rows).to(features.device()));
+  auto centres = sample.narrow(0, 0, std::min<int64_t>(count, sample.size(0))).clone();
+  for (int round = 0; round < kClusterRounds; ++round) {
+    const auto nearest = std::get<1>(torch::cdist(sample, centres).min(1));
+    auto sums = torch::zeros_like(centres).index_add_(0, nearest, sample);
+    const auto counts =
+        torch::zeros({centres.size(0)}, centres.options())
+            .index_add_(0, nearest, torch::ones({sample.size(0)}, centres.options()));
+    centres =
+        torch::where(counts.gt(0).unsqueeze(1), sums / counts.clamp_min(1.0).unsqueeze(1), centres);
+  }
+  if (centres.size(0) == count) return centres;
+  return torch::cat({centres, centres.narrow(0, 0, 1).expand({count - centres.size(0), -1})}, 0);
+}
+
+torch::Tensor assignment(const torch::Tensor& features, const torch::Tensor& centres) {
+  return std::get<1>(torch::cdist(features, centres).min(1));
+}
+
+}  // namespace
+
+void KinematicBase::fitChart(const torch::Tensor& pose) {
+  std::vector<int64_t> parents;
+  for (const int64_t p : m_parents) parents.push_back(std::max<int64_t>(p, 0));
+  const auto bones = pose - pose.index_select(1, torch::tensor(parents).to(pose.device()));
+  m_lengths.copy_(bones.norm(2, -1).mean(0));
+  auto axes = bones.mean(0);
+  axes[0] = torch::tensor({0.f, 1.f, 0.f}).to(axes.options());
+  // A bone of no length, or one that points everywhere, has no direction of its own: take up.
+  const auto size = axes.norm(2, -1, true);
+  axes =
+      torch::where(size > 1e-3, axes / size.clamp_min(1e-3), axes[0].unsqueeze(0).expand_as(axes));
+  const auto alongX = axes.select(1, 0).abs().lt(0.9).unsqueeze(1);
+  const auto fixed = torch::where(alongX, torch::tensor({{1.f, 0.f, 0.f}}).to(axes.options()),
+                                  torch::tensor({{0.f, 1.f, 0.f}}).to(axes.options()));
+  auto sides = fixed - (fixed * axes).sum(-1, true) * axes;
+  m_axes.copy_(axes);
+  m_chartSides.copy_(sides / sides.norm(2, -1, true));
+}
+
+void KinematicBase::fitForeseen(const torch::Tensor& pose, const Past& past) {
+  const auto target = (pose - past.poses.select(1, 0)).flatten(1);
+  const auto features = regressors(past);
+  const auto mean = features.to(torch::kFloat64).mean(0),
+             targetMean = target.to(torch::kFloat64).mean(0);
+  const auto width = features.size(1);
+  auto gram = torch::zeros({width, width}, mean.options());
+  auto cross = torch::zeros({width, target.size(1)}, mean.options());
+  for (int64_t at = 0; at < features.size(0); at += kChunk) {
+    const int64_t n = std::min(kChunk, features.size(0) - at);
+    const auto x = features.narrow(0, at, n).to(torch::kFloat64) - mean;
+    gram += x.t().matmul(x);
+    cross += x.t().matmul(target.narrow(0, at, n).to(torch::kFloat64) - targetMean);
+  }
+  const double ridge = m_config.baseRidge * static_cast<double>(features.size(0));
+  m_foreseenWeight.copy_(
+      torch::linalg_solve(gram + ridge * torch::eye(width, gram.options()), cross));
+  m_foreseenMean.copy_(mean);
+  m_foreseenBias.copy_(targetMean);
+}
+
+/// Per cluster of a foot's movement: how far it is held to its last place (the centre that makes
+/// the mean log distance smallest: robust, and drawn to sharp peaks), and the scale there.
+void KinematicBase::fitGate(const torch::Tensor& pose, const Past& past) {
+  std::vector<torch::Tensor> features, places, held, scales;
+  const auto foreseen = foreseenPose(past);
+  const BoneChart body = chart();
+  for (size_t f = 0; f < m_feet.size(); ++f) {
+    const int64_t j = m_feet[f], parent = m_parents[static_cast<size_t>(j)];
+    const auto unit = [](const torch::Tensor& v) {
+      return v / v.norm(2, -1, true).clamp_min(1e-6);
+    };
+    const auto frame =
+        chartFrame(body, j, unit(foreseen.select(1, j) - foreseen.select(1, parent)));
+    const auto bone = pose.select(1, j) - pose.select(1, parent);
+    places.push_back((frame * bone.unsqueeze(-1)).sum(-2).narrow(1, 0, 2));
+    held.push_back(chartPlace(
+        frame, unit(past.poses.select(1, 0).select(1, j) - pose.select(1, parent)), m_lengths[j]));
+    scales.push_back(baseScale(past, f));
+    features.push_back(footFeatures(past, f));
+  }
+  const auto all = torch::cat(features), place = torch::cat(places), last = torch::cat(held),
+             scale = torch::cat(scales);
+  m_footCentres.copy_(clusterCentres(all, m_config.footClusters));
+  const auto cluster = assignment(all, m_footCentres);
+  for (int64_t k = 0; k < m_config.footClusters; ++k) {
+    const auto rows = cluster.eq(k).nonzero().squeeze(1);
+    if (rows.size(0) == 0) continue;
+    const auto p = place.index_select(0, rows), l = last.index_select(0, rows);
+    double best = 1e30;
+    for (const double hold : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0}) {
+      const auto distance = (p - hold * l).norm(2, -1);
+      const double value = (distance + 0.05).log().mean().item<double>();
+      if (value >= best) continue;
+      best = value;
+      m_footHold[k] = hold;
+      m_footScale[k] = (distance / scale.index_select(0, rows)).median().clamp(0.3, 4.0);
+    }
+  }
+}
+
+void KinematicBase::fitRegimes(const torch::Tensor& local, const Past& past) {
+  const auto rich = richRegressors(past);
+  const auto keys = regimeFeatures(past);
+  m_regimeCentres.copy_(clusterCentres(keys, m_config.regimes));
+  m_richMean.copy_(rich.to(torch::kFloat64).mean(0));
+  const auto regime = assignment(keys, m_regimeCentres);
+  const auto total = static_cast<double>(rich.size(0));
+  const int64_t width = rich.size(1) + 1, d = local.size(1);
+  auto grams = torch::zeros({m_config.regimes, width, width}, torch::kFloat64);
+  auto crosses = torch::zeros({m_config.regimes, width, d}, torch::kFloat64);
+  for (int64_t k = 0; k < m_config.regimes; ++k) {
+    const auto rows = regime.eq(k).nonzero().squeeze(1);
+    for (int64_t at = 0; at < rows.size(0); at += kChunk) {
+      const auto part = rows.narrow(0, at, std::min(kChunk, rows.size(0) - at));
+      const auto centred = rich.index_select(0, part) - m_richMean;
+      const auto x = torch::cat({centred, torch::ones({part.size(0), 1}, centred.options())}, 1)
+                         .to(torch::kFloat64);
+      grams[k] += x.t().matmul(x).cpu();
+      crosses[k] += x.t().matmul(local.index_select(0, part).to(torch::kFloat64)).cpu();
+    }
+  }
+  const auto diagonal = [&](double strength, double intercept) {
+    auto out = torch::full({width}, strength, torch::kFloat64);
+    out[-1] = intercept;
+    return torch::diag(out);
+  };
+  const auto common = torch::linalg_solve(grams.sum(0) + diagonal(m_config.baseRidge * total, 1e-6),
+                                          crosses.sum(0));
+  // A regime corrects the common regression by what its own frames say, shrunk.
+  const auto shrink = diagonal(m_config.regimeShrinkage * total, 10.0);
+  auto weight = torch::empty({m_config.regimes, width, d}, torch::kFloat64);
+  for (int64_t k = 0; k < m_config.regimes; ++k)
+    weight[k] =
+        common + torch::linalg_solve(grams[k] + shrink, crosses[k] - grams[k].matmul(common));
+  // The feet's held coordinates are foreseen by the gate alone.
+  weight.index_fill_(2, m_order.narrow(0, 0, 2 * static_cast<int64_t>(m_feet.size())), 0.0);
+  m_richWeight.copy_(weight);
+}
+
+void KinematicBase::fitWhitening(const torch::Tensor& residual, const torch::Tensor& regime) {
+  const auto ordered = residual.index_select(1, m_order.to(residual.device())).to(torch::kFloat64);
+  const auto centred = ordered - ordered.mean(0);
+  const auto common = centred.t().matmul(centred) / static_cast<double>(ordered.size(0));
+  for (int64_t k = 0; k < m_config.regimes; ++k) {
+    const auto rows = ordered.index_select(0, regime.eq(k).nonzero().squeeze(1));
+    const auto covariance = (rows.t().matmul(rows) + kPriorFrames * common) /
+                            (static_cast<double>(rows.size(0)) + kPriorFrames);
+    const auto [values, vectors] = torch::linalg_eigh(covariance);
+    const auto floored =
+        values.clamp_min(std::max(m_config.baseFloor * values.max().item<double>(), 1e-12));
+    // Cholesky, not PCA: the feet come first and depend on nothing else.
+    const auto factor =
+        torch::linalg_cholesky(vectors.matmul(torch::diag(floored)).matmul(vectors.t()));
+    m_factor[k].copy_(factor);
+    m_factorInverse[k].copy_(torch::linalg_inv(factor));
+    m_factorLogDet[k] = -factor.diagonal().log().sum();
+  }
+}
+
+void KinematicBase::fitNetFeatures(const Past& past) {
+  const auto rich = richRegressors(past).to(torch::kFloat64);
+  const auto mean = rich.mean(0), centred = rich - mean;
+  const auto [values, vectors] =
+      torch::linalg_eigh(centred.t().matmul(centred) / static_cast<double>(rich.size(0)));
+  const auto count = m_config.netFeatures;
+  // A floor of (0.2 cm)^2 keeps tiny directions from being blown up.
+  m_netProjection.copy_(vectors.flip(1).narrow(1, 0, count) /
+                        (values.flip(0).narrow(0, 0, count) + 0.04).sqrt());
+  m_netMean.copy_(mean);
+  const auto deviation = centred.square().mean(0).sqrt().clamp_min(1e-6);
+  const int64_t speeds = m_speedScale.size(0), controls = m_controlScale.size(0),
+                width = rich.size(1);
+  m_speedScale.copy_(deviation.narrow(0, width - speeds, speeds));
+  m_controlScale.copy_(deviation.narrow(0, width - speeds - controls, controls));
+}
+
+void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input) {
+  const torch::NoGradGuard guard;
+  const auto pose = toCentimetres(poses);
+  const Past past = pastOf(input);
+  fitChart(pose);
+  fitForeseen(pose, past);
+  fitGate(pose, past);
+  const auto local =
+      toChart(chart(), pose, foreseenPose(past), past.poses.select(1, 0), gateOf(past))
+          .value.flatten(1);
+  fitRegimes(local, past);
+  const auto regime = assignment(regimeFeatures(past), m_regimeCentres);
+  auto residual = torch::empty_like(local);
+  const auto rich = richRegressors(past) - m_richMean;
+  for (int64_t k = 0; k < m_config.regimes; ++k) {
+    const auto rows = regime.eq(k).nonzero().squeeze(1);
+    if (rows.size(0) == 0) continue;
+    const auto foreseen =
+        rich.index_select(0, rows).matmul(m_richWeight[k].narrow(0, 0, rich.size(1))) +
+        m_richWeight[k][-1];
+    residual.index_copy_(0, rows, local.index_select(0, rows) - foreseen);
+  }
+  fitWhitening(residual, regime);
+  fitNetFeatures(past);
+}
+
+}  // namespace marey::moglow

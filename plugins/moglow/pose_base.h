@@ -1,0 +1,52 @@
+// The base of 'MG+': an exact layer below the flow that foresees the next pose from the history
+// and the control. The flow models what the base cannot foresee.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "moglow/config.h"
+#include "nn/torch.h"
+
+namespace marey::moglow {
+
+/// History and control of N frames, standardised.
+struct BaseInput {
+  torch::Tensor history;  ///< [N, tau * D], oldest frame first
+  torch::Tensor control;  ///< [N, (tau + 1 + lookahead) * C], oldest first
+  torch::Tensor keep;     ///< [N, tau]: 0 hides a history frame from the nets; undefined: none
+};
+
+/// What a base makes of one frame's conditioning; used by both directions.
+struct Foresight {
+  torch::Tensor features;            ///< [N, F]: what the coupling nets see
+  std::vector<torch::Tensor> parts;  ///< the base's own
+};
+
+/// What a base must know of the data besides its widths.
+struct BodyFacts {
+  std::vector<int> parents;  ///< of the joints; empty where unknown
+  std::vector<int> feet;     ///< contact joints, left ones first
+  std::vector<int> toes;     ///< beside each foot: its child, else its parent
+  std::vector<float> poseMean, poseStd, controlMean, controlStd;
+};
+
+class PoseBase : public torch::nn::Module {
+ public:
+  virtual Foresight foresee(const BaseInput& input) const = 0;
+  struct Innovation {
+    torch::Tensor value;   ///< [N, D]
+    torch::Tensor logDet;  ///< [N]
+  };
+  /// Standardised poses [N, D] <-> innovations.
+  virtual Innovation toInnovation(const torch::Tensor& pose, const Foresight& foresight) const = 0;
+  virtual torch::Tensor toPose(const torch::Tensor& innovation,
+                               const Foresight& foresight) const = 0;
+  /// Deterministic fit to standardised poses [N, D] with their inputs.
+  virtual void fit(const torch::Tensor& poses, const BaseInput& input) = 0;
+};
+
+/// Null for configurations without a base. Throws InputError when the body does not suit it.
+std::shared_ptr<PoseBase> makePoseBase(const Config& config, const BodyFacts& body);
+
+}  // namespace marey::moglow

@@ -1,14 +1,14 @@
 #include "cli/command.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <stop_token>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 namespace marey::cli {
 namespace {
@@ -26,7 +26,8 @@ extern "C" void onInterrupt(int signal) {
 
 std::string clockText(double seconds) {
   const auto total = static_cast<long>(seconds + 0.5);
-  if (total >= 3600) return fmt::format("{}:{:02}:{:02}", total / 3600, total / 60 % 60, total % 60);
+  if (total >= 3600)
+    return fmt::format("{}:{:02}:{:02}", total / 3600, total / 60 % 60, total % 60);
   return fmt::format("{}:{:02}", total / 60, total % 60);
 }
 
@@ -49,8 +50,9 @@ class ProgressLine {
     m_finished = last;
     const double elapsed = std::chrono::duration<double>(now - m_begin).count();
     const double left = fraction > 0.0 ? elapsed * (1.0 - fraction) / fraction : 0.0;
-    const std::string text = fmt::format("{} {:3.0f} %  {}{}", m_what, 100.0 * fraction, message,
-                                         last ? "  in " + clockText(elapsed) : "  " + clockText(left) + " left");
+    const std::string text =
+        fmt::format("{} {:3.0f} %  {}{}", m_what, 100.0 * fraction, message,
+                    last ? "  in " + clockText(elapsed) : "  " + clockText(left) + " left");
     // \r and "erase to the end of the line" redraw in place.
     fmt::print(stderr, "{}{}{}", m_terminal ? "\r" : "", text, m_terminal ? "\033[K" : "\n");
     std::fflush(stderr);
@@ -69,7 +71,7 @@ class ProgressLine {
 
 void Context::print(const Json& result, const std::string& text) const {
   if (json)
-    std::cout << result.dump() << '\n';
+    std::cout << jsonText(result) << '\n';
   else if (!quiet)
     std::cout << text << (text.ends_with('\n') ? "" : "\n");
   std::cout.flush();
@@ -80,12 +82,14 @@ Progress Context::progress(const std::string& what) const {
   std::signal(SIGTERM, onInterrupt);
   if (quiet) return Progress({}, interruptSource().get_token());
   auto line = std::make_shared<ProgressLine>(what);
-  return Progress([line](double fraction, std::string_view message) { line->show(fraction, message); },
-                  interruptSource().get_token());
+  return Progress(
+      [line](double fraction, std::string_view message) { line->show(fraction, message); },
+      interruptSource().get_token());
 }
 
-CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name, const std::string& summary,
-                     const std::string& example, std::function<void()> run) {
+CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name,
+                     const std::string& summary, const std::string& example,
+                     std::function<void()> run) {
   CLI::App* command = app.add_subcommand(name, summary);
   command->add_flag("--json", context.json, "Print one JSON object on stdout");
   command->add_flag("--quiet", context.quiet, "Print errors only");

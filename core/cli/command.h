@@ -2,12 +2,13 @@
 // progress on stderr, and one JSON object on stdout.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "base/job.h"
 #include "base/json.h"
@@ -18,9 +19,9 @@ struct Context {
   bool json = false;
   bool quiet = false;
   uint64_t seed = 1;
-  int threads = 0;                ///< 0: as many as there are cores
-  std::function<void()> run;      ///< set by the command that was chosen
-  std::string commandLine;        ///< for recipes
+  int threads = 0;            ///< 0: as many as there are cores
+  std::function<void()> run;  ///< set by the command that was chosen
+  std::string commandLine;    ///< for recipes
 
   /// One JSON object on stdout with --json, else `text` (nothing with --quiet).
   void print(const Json& result, const std::string& text) const;
@@ -34,11 +35,6 @@ struct Context {
 CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name,
                      const std::string& summary, const std::string& example,
                      std::function<void()> run);
-
-/// Files of inputs that may be files, directories (their files of a readable motion format, in
-/// name order) or @LIST (one name per line, relative to the list's folder; # starts a comment).
-/// Throws InputError when a list or directory holds none, FileError when one is missing.
-std::vector<std::filesystem::path> expandInputs(const std::vector<std::string>& inputs);
 
 // One function per command, called by main in this order.
 void addDemoCommand(CLI::App& app, Context& context);

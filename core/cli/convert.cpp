@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "cli/command.h"
+#include "cli/readers.h"
 #include "io/clip_io.h"
 #include "io/text.h"
 #include "motion/resample.h"

@@ -1,12 +1,12 @@
 // marey: the command line. One file per command; this one parses, runs and turns errors into
 // exit codes (0 done, 1 failed, 2 wrong usage).
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <exception>
 
+#include <fmt/format.h>
+
 #include "cli/command.h"
-#include "cli/threads.h"
+#include "nn/threads.h"
 
 namespace {
 
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   try {
-    configureThreads(context.threads, context.quiet);
+    marey::nn::configureThreads(context.threads, context.quiet);
     context.run();
     return 0;
   } catch (const marey::UsageError& e) {

@@ -2,10 +2,11 @@
 #include <cmath>
 #include <memory>
 
+#include "families.h"
+
 #include "base/atomic_file.h"
 #include "base/npy.h"
 #include "cli/command.h"
-#include "families.h"
 #include "model/conformance.h"
 #include "moglow/family.h"
 #include "motion/roles.h"
@@ -20,13 +21,16 @@ struct Options {
 
 ModelInfo describeConfig(const std::string& path) {
   const Json config = readJson(path);
-  return familyNamed(config.is_object() ? config.value("family", "moglow") : "moglow", modelFamilies(), path).describe(config, path);
+  return familyNamed(config.is_object() ? config.value("family", "moglow") : "moglow",
+                     modelFamilies(), path)
+      .describe(config, path);
 }
 
 Json infoJson(const ModelInfo& info) {
-  Json out = {{"family", info.family}, {"name", info.variant}, {"parameters", info.parameters},
-              {"pose_dim", info.poseDim}, {"control_dim", info.controlDim}, {"context", info.context},
-              {"lookahead", info.lookahead}, {"config", info.config}};
+  Json out = {{"family", info.family},          {"name", info.variant},
+              {"parameters", info.parameters},  {"pose_dim", info.poseDim},
+              {"control_dim", info.controlDim}, {"context", info.context},
+              {"lookahead", info.lookahead},    {"config", info.config}};
   if (info.hash.empty()) return out;  // a configuration, no model
   out["standardiser"] = !info.standardiser.empty();
   out["joints"] = info.skeleton ? info.skeleton->names : std::vector<std::string>{};
@@ -37,26 +41,40 @@ Json infoJson(const ModelInfo& info) {
 }
 
 void runInfo(const Options& o, const Context& context) {
-  if (o.model.empty() == o.config.empty()) throw UsageError("model info: give a MODEL or --config FILE, not both");
-  const ModelInfo info = o.config.empty() ? loadModel(o.model, modelFamilies())->info() : describeConfig(o.config);
-  std::string text = fmt::format("{} {}: {:.2f} M parameters; {} pose and {} control values, context {} frames, look-ahead {}\n",
-                                 info.family, info.variant, static_cast<double>(info.parameters) / 1e6, info.poseDim, info.controlDim, info.context, info.lookahead);
+  if (o.model.empty() == o.config.empty())
+    throw UsageError("model info: give a MODEL or --config FILE, not both");
+  const ModelInfo info =
+      o.config.empty() ? loadModel(o.model, modelFamilies())->info() : describeConfig(o.config);
+  std::string text = fmt::format(
+      "{} {}: {:.2f} M parameters; {} pose and {} control values, context {} frames, look-ahead "
+      "{}\n",
+      info.family, info.variant, static_cast<double>(info.parameters) / 1e6, info.poseDim,
+      info.controlDim, info.context, info.lookahead);
   text += info.config.dump(2) + "\n";
   if (!info.hash.empty()) {
-    text += info.standardiser.empty() ? "no standardiser: poses and likelihoods are in standardised units\n" : "with standardiser\n";
+    text += info.standardiser.empty()
+                ? "no standardiser: poses and likelihoods are in standardised units\n"
+                : "with standardiser\n";
     text += "provenance: " + info.provenance.dump(2) + "\n";
   }
   context.print(infoJson(info), text);
 }
 
 void runImport(const Options& o, const Context& context) {
-  const Standardiser standardiser = o.data.empty() ? Standardiser{} : standardiserFromArchive(o.data);
-  const auto model = moglow::importCheckpoint(o.checkpoint, readJson(o.config), o.config, standardiser, std::filesystem::path(o.out).stem().string());
+  const Standardiser standardiser =
+      o.data.empty() ? Standardiser{} : standardiserFromArchive(o.data);
+  const auto model =
+      moglow::importCheckpoint(o.checkpoint, readJson(o.config), o.config, standardiser,
+                               std::filesystem::path(o.out).stem().string());
   writeTensorFile(o.out, model->save());
   Json result = infoJson(model->info());
   result["written"] = o.out;
-  context.print(result, fmt::format("{}: {:.2f} M parameters{}", o.out, static_cast<double>(model->info().parameters) / 1e6,
-                                    standardiser.empty() ? ", without standardiser (give --data CLIPS.npz to refit it)" : ""));
+  context.print(result,
+                fmt::format("{}: {:.2f} M parameters{}", o.out,
+                            static_cast<double>(model->info().parameters) / 1e6,
+                            standardiser.empty()
+                                ? ", without standardiser (give --data CLIPS.npz to refit it)"
+                                : ""));
 }
 
 /// Half precision leaves standardisers alone: their rounding would move every pose.
@@ -69,16 +87,21 @@ void runExport(const Options& o, const Context& context) {
   if (!o.name.empty()) file.metadata["variant"] = o.name;
   writeTensorFile(o.out, file);
   const auto bytes = std::filesystem::file_size(o.out);
-  context.print({{"written", o.out}, {"bytes", bytes}}, fmt::format("{}: {:.1f} MB", o.out, static_cast<double>(bytes) / 1e6));
+  context.print({{"written", o.out}, {"bytes", bytes}},
+                fmt::format("{}: {:.1f} MB", o.out, static_cast<double>(bytes) / 1e6));
 }
 
 void runCheck(const Options& o, const Context& context) {
   const auto model = loadModel(o.model, modelFamilies());
   const ConformanceErrors e = checkConformance(*model, o.vectors);
-  context.print({{"latent_max_abs_error", e.latent}, {"loglik_max_abs_error", e.loglik}, {"sample_max_abs_error", e.sample}, {"frames", e.frames}},
-                fmt::format("largest differences over {} frames: latents {:.2e}, log-likelihoods {:.2e} nats, samples {:.2e}", e.frames, e.latent, e.loglik, e.sample));
+  context.print({{"latent_max_abs_error", e.latent},
+                 {"loglik_max_abs_error", e.loglik},
+                 {"sample_max_abs_error", e.sample},
+                 {"frames", e.frames}},
+                fmt::format("largest differences over {} frames: latents {:.2e}, log-likelihoods "
+                            "{:.2e} nats, samples {:.2e}",
+                            e.frames, e.latent, e.loglik, e.sample));
 }
-
 
 }  // namespace
 
@@ -86,30 +109,41 @@ void addModelCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
   auto* model = app.add_subcommand("model", "Look into, import, export and check models");
   model->require_subcommand(1);
-  auto* info = addCommand(*model, context, "info", "What a model or a configuration is", "marey model info --config resources/models/moglow-human.json",
-                       [o, &context] { runInfo(*o, context); });
+  auto* info = addCommand(*model, context, "info", "What a model or a configuration is",
+                          "marey model info --config resources/models/moglow-human.json",
+                          [o, &context] { runInfo(*o, context); });
   info->add_option("MODEL", o->model, "Model (.marey)");
   info->add_option("--config", o->config, "Hyper-parameters (JSON)");
 
-  auto* import = addCommand(*model, context, "import", "Read the authors' PyTorch checkpoint (.pkg, .pt)",
-                         "marey model import trained.pkg --config hparams.json --data all_locomotion_train_20fps.npz --out moglow.marey",
-                         [o, &context] { runImport(*o, context); });
-  import->add_option("CHECKPOINT", o->checkpoint, "PyTorch checkpoint; nothing in it is executed")->required();
-  import->add_option("--config", o->config, "The authors' hparams, or Marey's keys (JSON)")->required();
-  import->add_option("--data", o->data, "Their training clips (.npz): refits the standardiser, which checkpoints lack");
+  auto* import =
+      addCommand(*model, context, "import", "Read the authors' PyTorch checkpoint (.pkg, .pt)",
+                 "marey model import trained.pkg --config hparams.json --data "
+                 "all_locomotion_train_20fps.npz --out moglow.marey",
+                 [o, &context] { runImport(*o, context); });
+  import->add_option("CHECKPOINT", o->checkpoint, "PyTorch checkpoint; nothing in it is executed")
+      ->required();
+  import->add_option("--config", o->config, "The authors' hparams, or Marey's keys (JSON)")
+      ->required();
+  import->add_option(
+      "--data", o->data,
+      "Their training clips (.npz): refits the standardiser, which checkpoints lack");
   import->add_option("--out", o->out, "Model to write")->required();
 
-  auto* exporting = addCommand(*model, context, "export", "Write a model in a smaller or renamed form",
-                            "marey model export runs/small/best.marey --half --out small.marey", [o, &context] { runExport(*o, context); });
+  auto* exporting =
+      addCommand(*model, context, "export", "Write a model in a smaller or renamed form",
+                 "marey model export runs/small/best.marey --half --out small.marey",
+                 [o, &context] { runExport(*o, context); });
   exporting->add_option("MODEL", o->model, "Model (.marey)")->required();
   exporting->add_option("--out", o->out, "Model to write")->required();
   exporting->add_flag("--half", o->half, "Store the flow's weights in 16 bits");
   exporting->add_option("--name", o->name, "New name of the model");
 
-  auto* check = addCommand(*model, context, "check", "Compare a model with reference vectors", "marey model check moglow.marey --vectors vectors.npz",
-                        [o, &context] { runCheck(*o, context); });
+  auto* check = addCommand(*model, context, "check", "Compare a model with reference vectors",
+                           "marey model check moglow.marey --vectors vectors.npz",
+                           [o, &context] { runCheck(*o, context); });
   check->add_option("MODEL", o->model, "Model (.marey)")->required();
-  check->add_option("--vectors", o->vectors, "x, control, z, loglik_nats, z_in, x_sampled (.npz)")->required();
+  check->add_option("--vectors", o->vectors, "x, control, z, loglik_nats, z_in, x_sampled (.npz)")
+      ->required();
 }
 
 }  // namespace marey::cli

@@ -15,6 +15,13 @@ struct Options {
   io::ReadOptions read;
 };
 
+/// A plain text file of names is meant as a list, with or without its @.
+std::string asList(const std::string& input) {
+  const std::filesystem::path path(input);
+  const bool text = path.extension() == ".txt" && std::filesystem::is_regular_file(path);
+  return text && !io::isMotionFile(path) ? "@" + input : input;
+}
+
 /// Windows that a trainer with this window and hop cuts.
 size_t windowCount(const std::vector<FeatureSequence>& sequences, const PrepareOptions& options) {
   const double fps = options.features.fps;
@@ -31,11 +38,14 @@ double secondsOf(const std::vector<Clip>& clips) {
 
 void run(const Options& o, const Context& context) {
   std::vector<std::filesystem::path> trainFiles = expandInputs(o.sources), testFiles;
-  if (!o.test.empty()) testFiles = expandInputs(o.test);
+  for (const std::string& input : o.test)
+    for (const auto& file : expandInputs({asList(input)})) testFiles.push_back(file);
   // A held-out clip never trains, even where SRC is a folder that holds both.
   std::set<std::filesystem::path> held;
   for (const auto& path : testFiles) held.insert(std::filesystem::weakly_canonical(path));
-  std::erase_if(trainFiles, [&](const auto& path) { return held.contains(std::filesystem::weakly_canonical(path)); });
+  std::erase_if(trainFiles, [&](const auto& path) {
+    return held.contains(std::filesystem::weakly_canonical(path));
+  });
   Progress progress = context.progress("prepare");
   Progress reading = progress.part(0.0, 0.5), preparing = progress.part(0.5, 0.9);
   Progress readTrain = reading.part(0.0, 0.9), readTest = reading.part(0.9, 1.0);
@@ -55,32 +65,53 @@ void run(const Options& o, const Context& context) {
                        {"train_seconds", secondsOf(train)},
                        {"test_seconds", secondsOf(test)},
                        {"out", o.out}};
-  context.print(result, fmt::format("{}: {} training clips ({:.1f} min, {} windows with augmentation), {} test clips "
-                                    "({:.1f} min, {} windows); {} pose and {} control values per frame at {} fps",
-                                    o.out, train.size(), secondsOf(train) / 60, windowCount(data.train, o.prepare), test.size(),
-                                    secondsOf(test) / 60, windowCount(data.test, o.prepare), data.poseDim(), data.controlDim(),
-                                    o.prepare.features.fps));
+  context.print(
+      result,
+      fmt::format("{}: {} training clips ({:.1f} min, {} windows with augmentation), {} test clips "
+                  "({:.1f} min, {} windows); {} pose and {} control values per frame at {} fps",
+                  o.out, train.size(), secondsOf(train) / 60, windowCount(data.train, o.prepare),
+                  test.size(), secondsOf(test) / 60, windowCount(data.test, o.prepare),
+                  data.poseDim(), data.controlDim(), o.prepare.features.fps));
 }
 
 }  // namespace
 
 void addPrepareCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
-  auto* command = addCommand(app, context, "prepare", "Make a data set from motion files",
-                             "marey prepare @clips/train.txt --test @clips/test.txt --out walk.marey",
-                             [o, &context] { run(*o, context); });
+  auto* command =
+      addCommand(app, context, "prepare", "Make a data set from motion files",
+                 "marey prepare @clips/train.txt --test @clips/test.txt --out walk.marey",
+                 [o, &context] { run(*o, context); });
   command->add_option("SRC", o->sources, "Files, folders or @LIST to train on")->required();
   command->add_option("--out", o->out, "Data set to write")->required();
-  command->add_option("--test", o->test, "Held-out files, folders or @LIST (a plain list file is read as @LIST)");
+  command->add_option("--test", o->test,
+                      "Held-out files, folders or @LIST (a plain list file is read as @LIST)");
   auto& p = o->prepare;
-  command->add_option("--fps", p.features.fps, "Frame rate of the model")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--window", p.windowS, "Length of a training window, seconds")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--hop", p.hopS, "From one window to the next, seconds")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_flag("--mirror,!--no-mirror", p.mirror, "Augment with left and right swapped (default on)");
-  command->add_flag("--reverse,!--no-reverse", p.reverse, "Augment with time reversed (default on)");
-  command->add_option("--layout", p.features.layout, "Feature layout: positions")->capture_default_str();
-  command->add_option("--root-sigma", p.features.rootSigmaS, "Gaussian filter of the root's position, seconds")->check(CLI::NonNegativeNumber)->capture_default_str();
-  command->add_option("--facing-sigma", p.features.facingSigmaS, "Gaussian filter of the facing, seconds")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command->add_option("--fps", p.features.fps, "Frame rate of the model")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--window", p.windowS, "Length of a training window, seconds")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--hop", p.hopS, "From one window to the next, seconds")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_flag("--mirror,!--no-mirror", p.mirror,
+                    "Augment with left and right swapped (default on)");
+  command->add_flag("--reverse,!--no-reverse", p.reverse,
+                    "Augment with time reversed (default on)");
+  command->add_option("--layout", p.features.layout, "Feature layout: positions")
+      ->capture_default_str();
+  command
+      ->add_option("--root-sigma", p.features.rootSigmaS,
+                   "Gaussian filter of the root's position, seconds")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--facing-sigma", p.features.facingSigmaS,
+                   "Gaussian filter of the facing, seconds")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   addReadOptions(*command, o->read);
 }
 

@@ -3,12 +3,18 @@
 namespace marey::cli {
 
 void addReadOptions(CLI::App& command, io::ReadOptions& options) {
-  command.add_option("--unit", options.unit, "Unit of the files, where it is not stated or guessed wrongly: m, cm, mm, inch, foot, cmu");
-  command.add_option("--up", options.up, "Up axis of the files: y or z")->check(CLI::IsMember({"y", "z"}));
-  command.add_option("--source-fps", options.fps, "Frame rate of the files, in place of what they say")->check(CLI::PositiveNumber);
+  command.add_option(
+      "--unit", options.unit,
+      "Unit of the files, where it is not stated or guessed wrongly: m, cm, mm, inch, foot, cmu");
+  command.add_option("--up", options.up, "Up axis of the files: y or z")
+      ->check(CLI::IsMember({"y", "z"}));
+  command
+      .add_option("--source-fps", options.fps, "Frame rate of the files, in place of what they say")
+      ->check(CLI::PositiveNumber);
 }
 
-std::vector<Clip> readAll(const std::vector<std::filesystem::path>& files, const io::ReadOptions& options, Progress& progress) {
+std::vector<Clip> readAll(const std::vector<std::filesystem::path>& files,
+                          const io::ReadOptions& options, Progress& progress) {
   std::vector<Clip> out;
   for (size_t i = 0; i < files.size(); ++i) {
     progress.throwIfCancelled();

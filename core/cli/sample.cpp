@@ -2,10 +2,11 @@
 #include <chrono>
 #include <memory>
 
+#include "families.h"
+
 #include "base/atomic_file.h"
 #include "cli/command.h"
-#include "cli/paths.h"
-#include "families.h"
+#include "experiment/path_choice.h"
 #include "io/clip_io.h"
 
 namespace marey::cli {
@@ -22,9 +23,11 @@ struct Options {
 };
 
 Json recipe(const Options& o, const MotionModel& model, const Context& context) {
-  return {{"marey", MAREY_VERSION}, {"command", context.commandLine}, {"model", model.info().variant},
-          {"model_hash", model.info().hash}, {"path", o.path.path}, {"seed", context.seed},
-          {"temperature", o.temperature}, {"start", o.start}, {"warm_up_s", o.warmUp}};
+  return {{"marey", MAREY_VERSION},        {"command", context.commandLine},
+          {"model", model.info().variant}, {"model_hash", model.info().hash},
+          {"path", o.path.path},           {"seed", context.seed},
+          {"temperature", o.temperature},  {"start", o.start},
+          {"warm_up_s", o.warmUp}};
 }
 
 void run(Options& o, const Context& context) {
@@ -41,7 +44,8 @@ void run(Options& o, const Context& context) {
   for (int first = 0; first < o.samples; first += kBatch) {
     request.firstSample = first;
     request.samples = std::min(kBatch, o.samples - first);
-    Progress part = progress.part(static_cast<double>(first) / o.samples, static_cast<double>(first + request.samples) / o.samples);
+    Progress part = progress.part(static_cast<double>(first) / o.samples,
+                                  static_cast<double>(first + request.samples) / o.samples);
     for (const Clip& clip : sampleClips(*model, request, part)) {
       Json note = recipe(o, *model, context);
       note["sample"] = clip.name;
@@ -52,37 +56,58 @@ void run(Options& o, const Context& context) {
       names.push_back((std::filesystem::path(o.out) / file).string());
     }
   }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   folder.commit();
   const double frames = static_cast<double>(o.samples) * static_cast<double>(request.path.size());
-  context.print({{"clips", names}, {"frames_per_s", frames / seconds}, {"seconds_each", static_cast<double>(request.path.size()) / model->info().features.fps}},
-                fmt::format("{} motions of {:.1f} s in {} ({:.0f} frames/s)", o.samples,
-                            static_cast<double>(request.path.size()) / model->info().features.fps, o.out, frames / seconds));
+  context.print(
+      {{"clips", names},
+       {"frames_per_s", frames / seconds},
+       {"seconds_each", static_cast<double>(request.path.size()) / model->info().features.fps}},
+      fmt::format("{} motions of {:.1f} s in {} ({:.0f} frames/s)", o.samples,
+                  static_cast<double>(request.path.size()) / model->info().features.fps, o.out,
+                  frames / seconds));
 }
 
 }  // namespace
 
 void addSampleCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
-  auto* command = addCommand(app, context, "sample", "Sample motions from a model along a path",
-                             "marey sample runs/small/best.marey --path preset:turn-left -n 20 --out samples",
-                             [o, &context] { run(*o, context); });
+  auto* command =
+      addCommand(app, context, "sample", "Sample motions from a model along a path",
+                 "marey sample runs/small/best.marey --path preset:turn-left -n 20 --out samples",
+                 [o, &context] { run(*o, context); });
   command->add_option("MODEL", o->model, "Model (.marey)")->required();
-  command->add_option("--path", o->path.path,
-                      "preset:NAME (still, sideways, slow, fast, backward, turn-left, turn-right, circle, figure-eight), "
-                      "clip:FILE (that clip's own path) or a path file (JSON)")
+  command
+      ->add_option("--path", o->path.path,
+                   "preset:NAME (still, sideways, slow, fast, backward, turn-left, turn-right, "
+                   "circle, figure-eight), "
+                   "clip:FILE (that clip's own path) or a path file (JSON)")
       ->required();
-  command->add_option("-n,--samples", o->samples, "Number of motions")->check(CLI::Range(1, 10000000))->capture_default_str();
-  command->add_option("--out", o->out, "Folder to write to")->required();
-  command->add_option("--seconds", o->path.seconds, "Length (default: 10 s of a preset, all of a clip or path)")->check(CLI::PositiveNumber);
-  command->add_option("--temperature", o->temperature, "Factor on the latents")->check(CLI::NonNegativeNumber)->capture_default_str();
-  command->add_option("--start", o->start, "mean (the mean pose and a warm-up) or clip (the clip's first frames)")
-      ->check(CLI::IsMember({"mean", "clip"}))
+  command->add_option("-n,--samples", o->samples, "Number of motions")
+      ->check(CLI::Range(1, 10000000))
       ->capture_default_str();
-  command->add_option("--warm-up", o->warmUp, "Seconds generated and dropped after a start from the mean pose")
+  command->add_option("--out", o->out, "Folder to write to")->required();
+  command
+      ->add_option("--seconds", o->path.seconds,
+                   "Length (default: 10 s of a preset, all of a clip or path)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--temperature", o->temperature, "Factor on the latents")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--format", o->format, "bvh, npz or csv")->check(CLI::IsMember({"bvh", "npz", "csv"}))->capture_default_str();
+  command
+      ->add_option("--start", o->start,
+                   "mean (the mean pose and a warm-up) or clip (the clip's first frames)")
+      ->check(CLI::IsMember({"mean", "clip"}))
+      ->capture_default_str();
+  command
+      ->add_option("--warm-up", o->warmUp,
+                   "Seconds generated and dropped after a start from the mean pose")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--format", o->format, "bvh, npz or csv")
+      ->check(CLI::IsMember({"bvh", "npz", "csv"}))
+      ->capture_default_str();
 }
 
 }  // namespace marey::cli

@@ -1,8 +1,9 @@
 // marey train: a model from a configuration and a data set.
 #include <memory>
 
-#include "cli/command.h"
 #include "families.h"
+
+#include "cli/command.h"
 #include "model/trainer.h"
 
 namespace marey::cli {
@@ -15,7 +16,9 @@ struct Options {
   double minutes = 0.0;
 };
 
-Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json finiteOrNull(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 void run(Options& o, const Context& context) {
   o.request.config = readJson(o.config);
@@ -34,9 +37,11 @@ void run(Options& o, const Context& context) {
                      {"test_nats_per_frame", finiteOrNull(result.testNatsPerFrame)},
                      {"best", result.best.string()},
                      {"last", result.last.string()}};
-  context.print(json, fmt::format("{} steps; {:.1f} bits per frame in training, {:.1f} at best in validation; held-out clips "
+  context.print(json, fmt::format("{} steps; {:.1f} bits per frame in training, {:.1f} at best in "
+                                  "validation; held-out clips "
                                   "{:.1f} nats per frame (poses in metres)\n{}",
-                                  result.steps, result.trainBitsPerFrame, result.validBitsPerFrame, result.testNatsPerFrame, result.best.string()));
+                                  result.steps, result.trainBitsPerFrame, result.validBitsPerFrame,
+                                  result.testNatsPerFrame, result.best.string()));
 }
 
 }  // namespace
@@ -44,14 +49,20 @@ void run(Options& o, const Context& context) {
 void addTrainCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
   auto* command = addCommand(app, context, "train", "Train a model by maximum likelihood",
-                             "marey train resources/models/moglow-small.json --data walk.marey --out runs/small --minutes 60",
+                             "marey train resources/models/moglow-small.json --data walk.marey "
+                             "--out runs/small --minutes 60",
                              [o, &context] { run(*o, context); });
   command->add_option("CONFIG", o->config, "Hyper-parameters (JSON)")->required();
   command->add_option("--data", o->data, "Data set made by `marey prepare`")->required();
   command->add_option("--out", o->request.run, "Folder of the run")->required();
-  command->add_option("--steps", o->steps, "End at this step (0: as the configuration says)")->check(CLI::NonNegativeNumber);
-  command->add_option("--minutes", o->minutes, "End after this much training time, earlier runs included (0: no limit)")->check(CLI::NonNegativeNumber);
-  command->add_flag("--resume", o->request.resume, "Go on with the run in --out, with the same batches as if unbroken");
+  command->add_option("--steps", o->steps, "End at this step (0: as the configuration says)")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--minutes", o->minutes,
+                   "End after this much training time, earlier runs included (0: no limit)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--resume", o->request.resume,
+                    "Go on with the run in --out, with the same batches as if unbroken");
   command->add_option("--init", o->request.init, "Start from the weights of this model");
   command->add_option("--device", o->request.device, "cpu or cuda")->capture_default_str();
 }

@@ -292,7 +292,7 @@ class RowReader {
 JointTransforms readRows(LineReader& lines, const Hierarchy& hierarchy,
                          const MotionHeader& header) {
   // A header may promise anything: memory is taken for what the rest of the file can hold.
-  const size_t shortestRow = 2 * hierarchy.channelCount();
+  const size_t shortestRow = std::max<size_t>(2 * hierarchy.channelCount(), 1);
   const size_t room = std::min(header.frames, lines.bytesLeft() / shortestRow + 1);
   JointTransforms out;
   out.rotations.reserve(room * hierarchy.skeleton.names.size());

@@ -20,7 +20,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// Rotations for a clip that has none: none turned, every joint placed by its translation.
 Clip asTranslations(Clip clip) {
   clip.skeleton = withOffsetsFrom(clip);
-  const auto width = static_cast<size_t>(clip.jointCount());
+  const auto width = std::max<size_t>(clip.skeleton->names.size(), 1);
   JointTransforms transforms;
   transforms.rotations.assign(clip.positions.size(), Quat::Identity());
   for (size_t i = 0; i < clip.positions.size(); ++i) {

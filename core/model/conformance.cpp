@@ -11,7 +11,8 @@ namespace {
 /// Rows of one batch element of a (B, T, F) array.
 Matrix element(const Tensor& tensor, int64_t b) {
   const auto values = tensor.toFloats();
-  return Eigen::Map<const Matrix>(values.data() + b * tensor.shape[1] * tensor.shape[2], tensor.shape[1], tensor.shape[2]);
+  return Eigen::Map<const Matrix>(values.data() + b * tensor.shape[1] * tensor.shape[2],
+                                  tensor.shape[1], tensor.shape[2]);
 }
 
 Eigen::RowVectorXf rowOr(const std::vector<float>& values, int size, float fallback) {
@@ -34,7 +35,9 @@ Matrix flatRow(const Matrix& m, long first, long rows) {
   return Eigen::Map<const Eigen::RowVectorXf>(m.row(first).data(), rows * m.cols());
 }
 
-double worse(double a, double b) { return std::isnan(b) ? INFINITY : std::max(a, b); }
+double worse(double a, double b) {
+  return std::isnan(b) ? INFINITY : std::max(a, b);
+}
 
 }  // namespace
 
@@ -43,8 +46,11 @@ ConformanceErrors checkConformance(const MotionModel& model, const std::string& 
   TensorFile file{.tensors = readNpz(path)};
   const auto& x = file.get("x", {-1, -1, info.poseDim}, path);
   const int64_t batch = x.shape[0], frames = x.shape[1] - info.context;
-  if (frames < 1) throwInput({.path = path, .item = "array 'x'"}, fmt::format("more than {} frames", info.context), "{}", x.shape[1]);
-  const auto& control = file.get("control", {batch, x.shape[1] + info.lookahead, info.controlDim}, path);
+  if (frames < 1)
+    throwInput({.path = path, .item = "array 'x'"},
+               fmt::format("more than {} frames", info.context), "{}", x.shape[1]);
+  const auto& control =
+      file.get("control", {batch, x.shape[1] + info.lookahead, info.controlDim}, path);
   const auto& z = file.get("z", {batch, frames, info.poseDim}, path);
   const auto& loglik = file.get("loglik_nats", {batch, frames}, path);
   const auto& zIn = file.get("z_in", {batch, -1, info.poseDim}, path);
@@ -52,19 +58,23 @@ ConformanceErrors checkConformance(const MotionModel& model, const std::string& 
   const auto wantedLoglik = loglik.toDoubles();
   const auto& s = info.standardiser;
   const Units pose{rowOr(s.poseMean, info.poseDim, 0.f), rowOr(s.poseStd, info.poseDim, 1.f)};
-  const Units controls{rowOr(s.controlMean, info.controlDim, 0.f), rowOr(s.controlStd, info.controlDim, 1.f)};
+  const Units controls{rowOr(s.controlMean, info.controlDim, 0.f),
+                       rowOr(s.controlStd, info.controlDim, 1.f)};
   ConformanceErrors out{.frames = static_cast<int>(batch * frames)};
   for (int64_t b = 0; b < batch; ++b) {
-    const Matrix poses = pose.toModel(element(x, b)), control_b = controls.toModel(element(control, b));
+    const Matrix poses = pose.toModel(element(x, b)),
+                 control_b = controls.toModel(element(control, b));
     RolloutState state = model.start(1, flatRow(poses, 0, info.context));
     const SequenceScore score = model.observe(state, poses.bottomRows(frames), control_b);
     out.latent = worse(out.latent, (score.latent - element(z, b)).cwiseAbs().maxCoeff());
     for (int64_t t = 0; t < frames; ++t)
-      out.loglik = worse(out.loglik, std::abs(score.loglikNats[static_cast<size_t>(t)] - wantedLoglik[static_cast<size_t>(b * frames + t)]));
+      out.loglik = worse(out.loglik, std::abs(score.loglikNats[static_cast<size_t>(t)] -
+                                              wantedLoglik[static_cast<size_t>(b * frames + t)]));
     RolloutState rollout = model.start(1, {});
     const Matrix latents = element(zIn, b), wanted = element(sampled, b);
     for (int64_t t = 0; t < latents.rows(); ++t) {
-      const Matrix got = pose.toVectors(model.sampleFrame(rollout, flatRow(control_b, t, info.context + 1 + info.lookahead), latents.row(t)));
+      const Matrix got = pose.toVectors(model.sampleFrame(
+          rollout, flatRow(control_b, t, info.context + 1 + info.lookahead), latents.row(t)));
       out.sample = worse(out.sample, (got - wanted.row(t)).cwiseAbs().maxCoeff());
     }
   }
@@ -109,7 +119,8 @@ Standardiser standardiserFromArchive(const std::string& npz) {
     }
   }
   const double n = 4.0 * static_cast<double>(rows.rows());
-  if (n == 0.0) throw InputError({.path = npz, .item = "array 'clips'"}, "at least one frame", "none");
+  if (n == 0.0)
+    throw InputError({.path = npz, .item = "array 'clips'"}, "at least one frame", "none");
   Standardiser out;
   for (int64_t i = 0; i < kWidth; ++i) {
     const double mean = sum(i) / n, variance = squares(i) / n - mean * mean;

@@ -92,29 +92,41 @@ void sampleFrames(const MotionModel& model, const SampleRequest& request, const 
   }
 }
 
-std::vector<Clip> sampleClips(const MotionModel& model, const SampleRequest& request,
-                              Progress& progress) {
-  const ModelInfo& info = model.info();
-  if (!info.skeleton)
-    throw InputError({.path = info.variant}, "a model with a skeleton", "one imported without it");
+std::vector<FeatureSequence> sampleSequences(const MotionModel& model, const SampleRequest& request,
+                                             Progress& progress) {
   const auto frames = static_cast<long>(request.path.size());
-  std::vector<Matrix> poses(static_cast<size_t>(std::max(request.samples, 0)),
-                            Matrix(frames, info.poseDim));
+  const Matrix control = controlFromTrajectory(request.path);
+  std::vector<FeatureSequence> out;
+  for (int b = 0; b < request.samples; ++b)
+    out.push_back({fmt::format("sample_{:03}", request.firstSample + b),
+                   Matrix(frames, model.info().poseDim), control, request.path.front()});
   sampleFrames(
       model, request,
       [&](int t, const Matrix& batch) {
-        for (size_t b = 0; b < poses.size(); ++b) poses[b].row(t) = batch.row(static_cast<long>(b));
+        for (size_t b = 0; b < out.size(); ++b)
+          out[b].pose.row(t) = batch.row(static_cast<long>(b));
       },
       progress);
-  const Matrix control = controlFromTrajectory(request.path);
+  return out;
+}
+
+Clip sampledClip(const MotionModel& model, const FeatureSequence& sequence) {
+  const ModelInfo& info = model.info();
+  if (!info.skeleton)
+    throw InputError({.path = info.variant}, "a model with a skeleton", "one imported without it");
+  Clip clip = rebuildMotion(sequence.pose, sequence.control, sequence.start, info.skeleton,
+                            info.features.fps);
+  clip.name = sequence.name;
+  clip.source.format = "model";
+  clip.source.fps = info.features.fps;
+  return clip;
+}
+
+std::vector<Clip> sampleClips(const MotionModel& model, const SampleRequest& request,
+                              Progress& progress) {
   std::vector<Clip> out;
-  for (size_t b = 0; b < poses.size(); ++b) {
-    out.push_back(
-        rebuildMotion(poses[b], control, request.path.front(), info.skeleton, info.features.fps));
-    out.back().name = fmt::format("sample_{:03}", request.firstSample + static_cast<int>(b));
-    out.back().source.format = "model";
-    out.back().source.fps = info.features.fps;
-  }
+  for (const FeatureSequence& sequence : sampleSequences(model, request, progress))
+    out.push_back(sampledClip(model, sequence));
   return out;
 }
 

@@ -37,6 +37,13 @@ void drawLatent(uint64_t seed, int sample, int frame, double temperature, double
 void sampleFrames(const MotionModel& model, const SampleRequest& request, const FrameSink& sink,
                   Progress& progress);
 
+/// The motions as a model sees them, with the path's control.
+std::vector<FeatureSequence> sampleSequences(const MotionModel& model, const SampleRequest& request,
+                                             Progress& progress);
+
+/// World motion of a sampled sequence. Throws InputError for a model without a skeleton.
+Clip sampledClip(const MotionModel& model, const FeatureSequence& sequence);
+
 /// The motions as clips "sample_000", ... in world coordinates along the path.
 std::vector<Clip> sampleClips(const MotionModel& model, const SampleRequest& request,
                               Progress& progress);

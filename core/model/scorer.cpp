@@ -26,15 +26,11 @@ double ClipScore::meanNatsPerFrame() const {
          static_cast<double>(loglikNats.size());
 }
 
-ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardised) {
+ClipScore scoreSequence(const MotionModel& model, const FeatureSequence& features,
+                        bool standardised) {
   const ModelInfo& info = model.info();
-  const Place place{.path = clip.source.path.empty() ? clip.name : clip.source.path};
-  if (3 * clip.jointCount() != info.poseDim)
-    throwInput(place, fmt::format("{} joints, as the model has", info.poseDim / 3), "{}",
-               clip.jointCount());
-  const FeatureSequence features = extractFeatures(clip, info.features);
   if (features.frameCount() <= info.context)
-    throwInput(place,
+    throwInput({.path = features.name},
                fmt::format("more than {} frames at {} per second (the model's context)",
                            info.context, info.features.fps),
                "{}", features.frameCount());
@@ -42,7 +38,7 @@ ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardise
   const Matrix history = Eigen::Map<const Eigen::RowVectorXf>(
       features.pose.data(), static_cast<long>(info.context) * info.poseDim);
   RolloutState state = model.start(1, history);
-  ClipScore out{.name = clip.name, .firstFrame = info.context};
+  ClipScore out{.name = features.name, .firstFrame = info.context};
   const double shift = standardised ? 0.0 : info.standardiser.logDetPerFrame();
   for (long first = info.context; first < features.pose.rows(); first += kPiece) {
     const long count = std::min<long>(kPiece, features.pose.rows() - first);
@@ -55,6 +51,19 @@ ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardise
     }
   }
   out.bitsPerDimension = -out.meanNatsPerFrame() / (std::numbers::ln2 * info.poseDim);
+  return out;
+}
+
+ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardised) {
+  const ModelInfo& info = model.info();
+  const std::string& path = clip.source.path.empty() ? clip.name : clip.source.path;
+  if (3 * clip.jointCount() != info.poseDim)
+    throwInput({.path = path}, fmt::format("{} joints, as the model has", info.poseDim / 3), "{}",
+               clip.jointCount());
+  FeatureSequence features = extractFeatures(clip, info.features);
+  features.name = path;
+  ClipScore out = scoreSequence(model, features, standardised);
+  out.name = clip.name;
   return out;
 }
 

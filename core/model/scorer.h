@@ -17,6 +17,11 @@ struct ClipScore {
   double meanNatsPerFrame() const;
 };
 
+/// Scores features as they are: what a sampled motion was made of, with the control that it
+/// was given. Throws InputError when the sequence is not longer than the model's context.
+ClipScore scoreSequence(const MotionModel& model, const FeatureSequence& features,
+                        bool standardised = false);
+
 /// The clip's first `context` frames are history; the others are scored from a running state
 /// that starts at zero. `standardised` leaves the standardiser's log-determinant out.
 /// Throws InputError when the clip is too short or of another skeleton.

@@ -10,7 +10,8 @@ namespace {
 
 template <typename T>
 std::vector<T> sliceRows(const std::vector<T>& values, int width, int first, int last) {
-  return {values.begin() + static_cast<long>(first) * width, values.begin() + static_cast<long>(last) * width};
+  return {values.begin() + static_cast<long>(first) * width,
+          values.begin() + static_cast<long>(last) * width};
 }
 
 template <typename T>
@@ -64,19 +65,26 @@ void validate(const Clip& clip) {
   validate(*clip.skeleton, path);
   if (clip.positions.empty()) throw InputError({.path = path}, "at least one frame", "zero frames");
   if (clip.positions.size() % static_cast<size_t>(clip.jointCount()) != 0)
-    throwInput({.path = path}, fmt::format("{} joints in every frame", clip.jointCount()), "{} positions in all", clip.positions.size());
-  if (!(clip.fps > 0.0) || !std::isfinite(clip.fps)) throwInput({.path = path}, "a positive frame rate", "{}", clip.fps);
-  const auto bad = std::find_if(clip.positions.begin(), clip.positions.end(), [](const Vec3& p) { return !p.allFinite(); });
+    throwInput({.path = path}, fmt::format("{} joints in every frame", clip.jointCount()),
+               "{} positions in all", clip.positions.size());
+  if (!(clip.fps > 0.0) || !std::isfinite(clip.fps))
+    throwInput({.path = path}, "a positive frame rate", "{}", clip.fps);
+  const auto bad = std::find_if(clip.positions.begin(), clip.positions.end(),
+                                [](const Vec3& p) { return !p.allFinite(); });
   if (bad == clip.positions.end()) return;
   const auto index = bad - clip.positions.begin();
-  throw InputError({.path = path, .frame = index / clip.jointCount() + 1,
-                    .item = "joint '" + clip.skeleton->names[static_cast<size_t>(index % clip.jointCount())] + "'"},
-                   "a finite position", "NaN or infinity");
+  throw InputError(
+      {.path = path,
+       .frame = index / clip.jointCount() + 1,
+       .item =
+           "joint '" + clip.skeleton->names[static_cast<size_t>(index % clip.jointCount())] + "'"},
+      "a finite position", "NaN or infinity");
 }
 
 Clip sliceFrames(const Clip& clip, int first, int last) {
   if (first < 0 || last > clip.frameCount() || first >= last)
-    throwInput({.path = clip.name}, fmt::format("frames within 0..{}", clip.frameCount()), "{}:{}", first, last);
+    throwInput({.path = clip.name}, fmt::format("frames within 0..{}", clip.frameCount()), "{}:{}",
+               first, last);
   Clip out = clip;
   const int width = clip.jointCount();
   out.positions = sliceRows(clip.positions, width, first, last);
@@ -90,7 +98,8 @@ Clip withoutStaticRoot(Clip clip) {
   if (clip.frameCount() == 0 || !rootIsStatic(clip)) return clip;
   const int width = clip.jointCount();
   clip.source.notes.push_back("root joint '" + clip.skeleton->names[0] + "' never moves: left out");
-  if (!clip.source.eulerOrders.empty()) clip.source.eulerOrders.erase(clip.source.eulerOrders.begin());
+  if (!clip.source.eulerOrders.empty())
+    clip.source.eulerOrders.erase(clip.source.eulerOrders.begin());
   clip.skeleton = std::make_shared<const Skeleton>(dropRoot(*clip.skeleton));
   clip.positions = withoutColumnZero(clip.positions, width);
   if (clip.transforms) clip.transforms = dropRoot(*clip.transforms, width);

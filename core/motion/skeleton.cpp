@@ -23,7 +23,8 @@ bool Skeleton::operator==(const Skeleton& other) const {
     return a.parent == b.parent && a.offset == b.offset;
   };
   return names == other.names && parents == other.parents && offsets == other.offsets &&
-         std::equal(endSites.begin(), endSites.end(), other.endSites.begin(), other.endSites.end(), sameSite);
+         std::equal(endSites.begin(), endSites.end(), other.endSites.begin(), other.endSites.end(),
+                    sameSite);
 }
 
 void validate(const Skeleton& skeleton, const std::string& origin) {
@@ -37,7 +38,8 @@ void validate(const Skeleton& skeleton, const std::string& origin) {
     const int parent = skeleton.parents[j];
     const bool ordered = j == 0 ? parent == -1 : parent >= 0 && parent < static_cast<int>(j);
     if (!ordered) throwInput(place, "a parent that comes before it", "parent {}", parent);
-    if (!skeleton.offsets[j].allFinite()) throw InputError(place, "a finite offset", "NaN or infinity");
+    if (!skeleton.offsets[j].allFinite())
+      throw InputError(place, "a finite offset", "NaN or infinity");
   }
 }
 

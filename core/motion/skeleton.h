@@ -1,10 +1,11 @@
 // A tree of joints. Parents come before their children; joint 0 is the root.
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace marey {
 
@@ -16,8 +17,8 @@ struct Skeleton {
   };
 
   std::vector<std::string> names;
-  std::vector<int> parents;               ///< -1 for the root
-  std::vector<Eigen::Vector3f> offsets;   ///< rest offset from the parent, metres, parent's frame
+  std::vector<int> parents;              ///< -1 for the root
+  std::vector<Eigen::Vector3f> offsets;  ///< rest offset from the parent, metres, parent's frame
   std::vector<EndSite> endSites;
 
   int jointCount() const { return static_cast<int>(names.size()); }

@@ -128,7 +128,7 @@ BodyShape bodyShape(const Skeleton& skeleton, std::span<const Vec3> pose) {
 }
 
 Vec3 headCentre(const BodyShape& shape, std::span<const Vec3> pose) {
-  const Vec3 head = pose[static_cast<size_t>(shape.head)];
+  const Vec3& head = pose[static_cast<size_t>(shape.head)];
   const Vec3 along = head - pose[static_cast<size_t>(shape.neck)];
   const float length = along.norm();
   return length < 1e-6F ? head : Vec3(head + along * (0.55F * shape.headRadiusM / length));
@@ -153,6 +153,7 @@ std::vector<Vec3> poseAt(const Clip& clip, double timeS) {
   const int after = std::min(before + 1, clip.frameCount() - 1);
   const auto share = static_cast<float>(at - before);
   std::vector<Vec3> pose;
+  pose.reserve(static_cast<size_t>(clip.jointCount()));
   for (int j = 0; j < clip.jointCount(); ++j) {
     pose.emplace_back(clip.at(before, j) * (1.0F - share) + clip.at(after, j) * share);
   }

@@ -199,8 +199,9 @@ struct Layout {
     const double outerBottom = innerX ? 0.0 : margins.bottom - 8.0;
     const double width = (area.width() - outerLeft - (columns - 1) * gap) / columns;
     const double height = (area.height() - outerBottom - (rows - 1) * gap) / rows;
+    const int row = index / columns;
     const double left = area.left + outerLeft + (index % columns) * (width + gap);
-    const double top = area.top + (index / columns) * (height + gap);
+    const double top = area.top + row * (height + gap);
     return {left - outerLeft, top, left + width, top + height + outerBottom};
   }
   Box plot(int index) const {

@@ -1,6 +1,7 @@
 #include "render/composite.h"
 
 #include <array>
+#include <cmath>
 
 namespace marey::render {
 
@@ -33,7 +34,8 @@ void composite(Rendered& floor, const std::vector<LayerPicture>& layers) {
       const LayerPicture& layer = layers[order[i]];
       const bool solid = layer.opacity >= 1.0;
       const double share = solid ? 1.0 : layer.opacity * thinned;
-      blend(&floor.rgba[4 * p], &layer.picture.rgba[4 * p], static_cast<int>(256.0 * share + 0.5));
+      blend(&floor.rgba[4 * p], &layer.picture.rgba[4 * p],
+            static_cast<int>(std::lround(256.0 * share)));
       if (solid) thinned = thinning;
     }
   }

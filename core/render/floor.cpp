@@ -62,19 +62,21 @@ void paintArrow(Drawing& drawing, Point tip, Point direction, const Colour& colo
 void paintPath(Drawing& drawing, const std::vector<std::pair<double, double>>& path) {
   const Colour colour = grey(0.55);
   std::vector<Point> points;
+  points.reserve(path.size());
   for (const auto& [x, z] : path) points.push_back({x, z});
   double total = 0.0;
   for (size_t i = 1; i < points.size(); ++i) {
     total += std::hypot(points[i].x - points[i - 1].x, points[i].y - points[i - 1].y);
   }
-  double length = 0.0, nextArrow = 1.0;
+  double length = 0.0;
+  int nextArrow = 1;  // metres from the start
   Point direction{0, 0};
   for (size_t i = 1; i < points.size(); ++i) {
     const Point a = points[i - 1], b = points[i];
     const double step = std::hypot(b.x - a.x, b.y - a.y);
     if (step < 1e-9) continue;
     direction = {(b.x - a.x) / step, (b.y - a.y) / step};
-    for (; nextArrow <= std::min(length + step, total - 0.5); nextArrow += 1.0) {
+    for (; nextArrow <= std::min(length + step, total - 0.5); ++nextArrow) {
       const double s = nextArrow - length;
       paintArrow(drawing, {a.x + s * direction.x, a.y + s * direction.y}, direction, colour);
     }

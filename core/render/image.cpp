@@ -110,8 +110,8 @@ Image decodePng(std::string_view bytes, const std::string& origin) {
   png_read_update_info(reader.png, reader.info);
   Image image(static_cast<int>(png_get_image_width(reader.png, reader.info)),
               static_cast<int>(png_get_image_height(reader.png, reader.info)));
-  std::vector<png_bytep> rows;
-  for (int y = 0; y < image.height; ++y) rows.push_back(image.at(0, y));
+  std::vector<png_bytep> rows(static_cast<size_t>(image.height));
+  for (int y = 0; y < image.height; ++y) rows[static_cast<size_t>(y)] = image.at(0, y);
   png_read_image(reader.png, rows.data());
   return image;
 }

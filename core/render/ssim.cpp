@@ -14,7 +14,7 @@ std::array<double, window> gaussianWindow() {
   std::array<double, window> weights{};
   double sum = 0.0;
   for (int i = 0; i < window; ++i) {
-    const double x = i - window / 2;
+    const double x = i - 0.5 * (window - 1);
     weights[static_cast<size_t>(i)] = std::exp(-x * x / (2.0 * 1.5 * 1.5));
     sum += weights[static_cast<size_t>(i)];
   }

@@ -1,12 +1,13 @@
+#include "io/inputs.h"
+
 #include <algorithm>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "cli/command.h"
 #include "io/clip_io.h"
 #include "io/text.h"
 
-namespace marey::cli {
+namespace marey::io {
 namespace fs = std::filesystem;
 namespace {
 
@@ -14,7 +15,7 @@ std::vector<fs::path> filesOfFolder(const fs::path& folder) {
   std::vector<fs::path> out;
   std::error_code ec;
   for (const auto& entry : fs::directory_iterator(folder, ec))
-    if (io::isMotionFile(entry.path())) out.push_back(entry.path());
+    if (isMotionFile(entry.path())) out.push_back(entry.path());
   if (ec) throw FileError(fmt::format("{}: cannot list: {}", folder.string(), ec.message()));
   if (out.empty())
     throw InputError({.path = folder.string()}, "a folder with motion files", "none in it");
@@ -30,10 +31,10 @@ void requireFile(const fs::path& path, const std::string& namedBy) {
 
 std::vector<fs::path> filesOfList(const fs::path& list) {
   const std::string text = readFile(list);
-  io::LineReader lines(text, list.string());
+  LineReader lines(text, list.string());
   std::vector<fs::path> out;
   while (const auto line = lines.nextFilled()) {
-    const std::string_view name = io::trim(*line);
+    const std::string_view name = trim(*line);
     if (name.starts_with('#')) continue;
     out.push_back(list.parent_path() / fs::path(std::string(name)));
     requireFile(out.back(), lines.place().text() + ": ");
@@ -43,23 +44,24 @@ std::vector<fs::path> filesOfList(const fs::path& list) {
   return out;
 }
 
-std::vector<fs::path> filesOf(const std::string& input) {
-  if (input.starts_with('@')) return filesOfList(input.substr(1));
-  requireFile(input, "");
-  if (fs::is_directory(input)) return filesOfFolder(input);
-  return {fs::path(input)};
+std::vector<fs::path> filesOf(const std::string& input, const fs::path& folder) {
+  if (input.starts_with('@')) return filesOfList(folder / input.substr(1));
+  const fs::path path = folder / input;
+  requireFile(path, "");
+  if (fs::is_directory(path)) return filesOfFolder(path);
+  return {path};
 }
 
 }  // namespace
 
-std::vector<fs::path> expandInputs(const std::vector<std::string>& inputs) {
+std::vector<fs::path> expandInputs(const std::vector<std::string>& inputs, const fs::path& folder) {
   std::vector<fs::path> out;
   for (const std::string& input : inputs) {
-    const std::vector<fs::path> files = filesOf(input);
+    const std::vector<fs::path> files = filesOf(input, folder);
     out.insert(out.end(), files.begin(), files.end());
   }
   if (out.empty()) throw InputError({.path = "inputs"}, "at least one motion file", "none");
   return out;
 }
 
-}  // namespace marey::cli
+}  // namespace marey::io

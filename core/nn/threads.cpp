@@ -1,15 +1,15 @@
-#include "cli/threads.h"
-
-#include <dlfcn.h>
-#include <fmt/format.h>
+#include "nn/threads.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <thread>
 
+#include <dlfcn.h>
+#include <fmt/format.h>
+
 #include "nn/torch.h"
 
-namespace marey::cli {
+namespace marey::nn {
 
 void configureThreads(int threads, bool quiet) {
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
@@ -22,8 +22,9 @@ void configureThreads(int threads, bool quiet) {
   if (ask == nullptr || set == nullptr || ask() != 1) return;
   set(1);
   if (!quiet)
-    fmt::print(stderr, "note: this OpenBLAS runs its own threads, which fight libtorch's: kept to one. "
-                       "On Debian, install libopenblas0-openmp and select it with update-alternatives.\n");
+    fmt::print(stderr,
+               "note: this OpenBLAS runs its own threads, which fight libtorch's: kept to one. "
+               "On Debian, install libopenblas0-openmp and select it with update-alternatives.\n");
 }
 
-}  // namespace marey::cli
+}  // namespace marey::nn

@@ -1,0 +1,11 @@
+// The demonstration's model and document, inside the program.
+#pragma once
+
+#include <string_view>
+
+namespace marey::cli {
+
+std::string_view demoModel();
+std::string_view demoExperiment();
+
+}  // namespace marey::cli

@@ -1,0 +1,112 @@
+#include "experiment/document.h"
+
+#include <set>
+
+#include "base/hash.h"
+
+namespace marey {
+namespace {
+
+template <typename T>
+void requireAtLeast(const JsonReader& reader, const char* key, T value, T least) {
+  if (!(value >= least))
+    throwInput(reader.place(key), fmt::format("at least {}", least), "{}", value);
+}
+
+ExperimentSystem systemFromJson(const Json& value, const std::string& origin,
+                                const std::string& prefix) {
+  JsonReader reader(value, origin, prefix);
+  ExperimentSystem out;
+  out.name = reader.required<std::string>("name");
+  out.model = reader.required<std::string>("model");
+  out.temperature = reader.optional("temperature", out.temperature);
+  reader.finish();
+  requireAtLeast(reader, "temperature", out.temperature, 0.0);
+  return out;
+}
+
+ExperimentPath pathFromJson(const Json& value, const std::string& origin,
+                            const std::string& prefix) {
+  JsonReader reader(value, origin, prefix);
+  ExperimentPath out;
+  out.name = reader.required<std::string>("name");
+  out.path = reader.required<std::string>("path");
+  out.seconds = reader.optional("seconds", out.seconds);
+  reader.finish();
+  requireAtLeast(reader, "seconds", out.seconds, 0.2);
+  return out;
+}
+
+/// The objects of a list, whose names must differ: figures and tables are keyed by them.
+template <typename T>
+std::vector<T> namedList(JsonReader& reader, const std::string& key,
+                         T (*parse)(const Json&, const std::string&, const std::string&)) {
+  std::vector<T> out;
+  if (!reader.has(key)) return out;
+  const Json& list = reader.raw(key);
+  if (!list.is_array()) throw InputError(reader.place(key), "a list", list.type_name());
+  std::set<std::string> names;
+  for (size_t i = 0; i < list.size(); ++i) {
+    out.push_back(parse(list[i], reader.origin(), fmt::format("{}[{}].", key, i)));
+    if (!names.insert(out.back().name).second)
+      throw InputError(reader.place(key), "different names", "'" + out.back().name + "' twice");
+  }
+  return out;
+}
+
+}  // namespace
+
+Experiment experimentFromJson(const Json& value, const std::string& origin) {
+  JsonReader reader(value, origin);
+  Experiment out;
+  out.title = reader.optional("title", out.title);
+  out.notes = reader.optional("notes", out.notes);
+  out.natural = reader.required<std::vector<std::string>>("natural");
+  out.systems = namedList(reader, "systems", systemFromJson);
+  out.paths = namedList(reader, "paths", pathFromJson);
+  out.samples = reader.optional("samples", out.samples);
+  out.heldOutSamples = reader.optional("held_out_samples", out.heldOutSamples);
+  out.seed = reader.optional("seed", out.seed);
+  out.fps = reader.optional("fps", out.fps);
+  out.feet = reader.optional("feet", out.feet);
+  out.toleranceStepCmS = reader.optional("tolerance_step_cm_s", out.toleranceStepCmS);
+  reader.finish();
+  if (out.natural.empty())
+    throw InputError(reader.place("natural"), "at least one source of clips", "none");
+  requireAtLeast(reader, "samples", out.samples, 1);
+  requireAtLeast(reader, "held_out_samples", out.heldOutSamples, 0);
+  requireAtLeast(reader, "fps", out.fps, 1.0);
+  requireAtLeast(reader, "tolerance_step_cm_s", out.toleranceStepCmS, 0.01);
+  return out;
+}
+
+Experiment readExperiment(const std::filesystem::path& path) {
+  Experiment out = experimentFromJson(readJson(path), path.string());
+  out.folder = path.parent_path();
+  return out;
+}
+
+Json toJson(const Experiment& e) {
+  Json systems = Json::array(), paths = Json::array();
+  for (const auto& s : e.systems)
+    systems.push_back({{"name", s.name}, {"model", s.model}, {"temperature", s.temperature}});
+  for (const auto& p : e.paths)
+    paths.push_back({{"name", p.name}, {"path", p.path}, {"seconds", p.seconds}});
+  return {{"title", e.title},
+          {"notes", e.notes},
+          {"natural", e.natural},
+          {"systems", systems},
+          {"paths", paths},
+          {"samples", e.samples},
+          {"held_out_samples", e.heldOutSamples},
+          {"seed", e.seed},
+          {"fps", e.fps},
+          {"feet", e.feet},
+          {"tolerance_step_cm_s", e.toleranceStepCmS}};
+}
+
+std::string experimentHash(const Experiment& experiment) {
+  return contentHash(toJson(experiment).dump());
+}
+
+}  // namespace marey

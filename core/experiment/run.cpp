@@ -1,0 +1,123 @@
+#include "experiment/run.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "experiment/path_choice.h"
+#include "model/sampler.h"
+#include "stats/footsteps.h"
+
+namespace marey {
+namespace {
+
+/// Samples of different stages of one experiment take different latents.
+constexpr int kHeldOutSampleBase = 1000000;
+
+double seconds(std::chrono::steady_clock::time_point from) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
+}
+
+void checkRate(const MotionModel& model, const Experiment& experiment) {
+  if (std::abs(model.info().features.fps - experiment.fps) > 1e-6)
+    throwInput(
+        {.path = experiment.title, .item = "key 'fps'"},
+        fmt::format("the rate of model {}: {}", model.info().variant, model.info().features.fps),
+        "{}", experiment.fps);
+}
+
+/// Held-out samples: along each natural clip's own control.
+void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vector<Clip>& natural,
+                   SystemResult& out, Progress& progress) {
+  double frames = 0.0;
+  const auto begin = std::chrono::steady_clock::now();
+  for (size_t i = 0; i < natural.size(); ++i) {
+    progress.throwIfCancelled();
+    SampleRequest request = requestAlongClip(model, natural[i], false);
+    request.samples = e.heldOutSamples;
+    request.seed = e.seed;
+    request.temperature = out.temperature;
+    request.firstSample = kHeldOutSampleBase + static_cast<int>(i) * e.heldOutSamples;
+    Progress quiet;
+    for (FeatureSequence& sequence : sampleSequences(model, request, quiet)) {
+      out.heldOutScores.push_back(scoreSequence(model, sequence));
+      out.heldOut.push_back(sampledClip(model, sequence));
+      out.heldOut.back().name = natural[i].name + "/" + sequence.name;
+      out.heldOutPaths.push_back(request.path);
+      frames += sequence.frameCount();
+    }
+    progress.report(static_cast<double>(i + 1) / static_cast<double>(natural.size()),
+                    out.name + ": held-out control");
+  }
+  out.framesPerSecond = frames / seconds(begin);
+}
+
+void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& out,
+                 Progress& progress) {
+  for (size_t i = 0; i < e.paths.size(); ++i) {
+    const ExperimentPath& path = e.paths[i];
+    SampleRequest request =
+        requestFor(model, {.path = path.path, .seconds = path.seconds, .folder = e.folder});
+    request.samples = e.samples;
+    request.seed = e.seed;
+    request.temperature = out.temperature;
+    Progress part = progress.part(static_cast<double>(i) / static_cast<double>(e.paths.size()),
+                                  static_cast<double>(i + 1) / static_cast<double>(e.paths.size()));
+    PathSamples& samples = out.paths[path.name];
+    samples.wanted = request.path;
+    for (const FeatureSequence& sequence : sampleSequences(model, request, part)) {
+      samples.scores.push_back(scoreSequence(model, sequence));
+      samples.clips.push_back(std::make_shared<const Clip>(sampledClip(model, sequence)));
+    }
+  }
+}
+
+void scoreNatural(const MotionModel& model, const std::vector<Clip>& natural, SystemResult& out) {
+  double sum = 0.0, frames = 0.0;
+  for (const Clip& clip : natural) {
+    // A clip that is all context has no frame to score.
+    if (clip.frameCount() <= model.info().context) continue;
+    out.naturalScores.push_back(scoreClip(model, clip));
+    for (const double nats : out.naturalScores.back().loglikNats) sum += nats;
+    frames += static_cast<double>(out.naturalScores.back().loglikNats.size());
+  }
+  out.naturalNatsPerFrame = frames > 0 ? sum / frames : std::numeric_limits<double>::quiet_NaN();
+}
+
+double floorOf(const ModelInfo& info) {
+  const Json facts = info.provenance.value("facts", Json::object());
+  if (!facts.contains("linear_gaussian_nats_per_frame"))
+    return std::numeric_limits<double>::quiet_NaN();
+  return facts["linear_gaussian_nats_per_frame"].get<double>() + info.standardiser.logDetPerFrame();
+}
+
+}  // namespace
+
+ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
+                               Progress& progress) {
+  ExperimentResult out{.experiment = experiment, .hash = experimentHash(experiment)};
+  Progress reading = progress.part(0.0, 0.05);
+  out.natural = naturalClips(experiment, reading);
+  out.feet = stats::feetOf(*out.natural.front().skeleton, experiment.feet);
+  const double share = 0.95 / static_cast<double>(std::max<size_t>(1, experiment.systems.size()));
+  for (size_t i = 0; i < experiment.systems.size(); ++i) {
+    const ExperimentSystem& system = experiment.systems[i];
+    const auto model = loadModel((experiment.folder / system.model).string(), families);
+    checkRate(*model, experiment);
+    SystemResult result{
+        .name = system.name, .info = model->info(), .temperature = system.temperature};
+    const double from = 0.05 + share * static_cast<double>(i);
+    Progress heldOut = progress.part(from, from + 0.5 * share),
+             paths = progress.part(from + 0.5 * share, from + share);
+    scoreNatural(*model, out.natural, result);
+    if (experiment.heldOutSamples > 0)
+      sampleHeldOut(*model, experiment, out.natural, result, heldOut);
+    samplePaths(*model, experiment, result, paths);
+    result.linearGaussianNats = floorOf(result.info);
+    out.systems.push_back(std::move(result));
+  }
+  return out;
+}
+
+}  // namespace marey

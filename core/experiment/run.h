@@ -1,0 +1,54 @@
+// Runs an experiment: natural clips, held-out and free samples of every system, their scores.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/job.h"
+#include "experiment/document.h"
+#include "model/motion_model.h"
+#include "model/scorer.h"
+
+namespace marey {
+
+using ClipPtr = std::shared_ptr<const Clip>;
+
+/// Motions of one system along one path.
+struct PathSamples {
+  std::vector<RootFrame> wanted;
+  std::vector<ClipPtr> clips;
+  std::vector<ClipScore> scores;  ///< of the clips, with the control that they were given
+};
+
+struct SystemResult {
+  std::string name;
+  ModelInfo info;
+  double temperature = 1.0;
+  std::vector<Clip> heldOut;  ///< along the natural clips' control
+  std::vector<std::vector<RootFrame>> heldOutPaths;
+  std::vector<ClipScore> naturalScores, heldOutScores;
+  std::map<std::string, PathSamples> paths;  ///< by the path's name
+  double framesPerSecond = 0.0;              ///< of sampling
+  double naturalNatsPerFrame = 0.0;          ///< mean over all scored frames, poses in metres
+  double linearGaussianNats = 0.0;           ///< the floor, same unit; NaN where not stored
+};
+
+struct ExperimentResult {
+  Experiment experiment;
+  std::string hash;
+  std::vector<Clip> natural;  ///< at the experiment's rate
+  std::vector<int> feet;
+  std::vector<SystemResult> systems;
+};
+
+/// Natural clips at the experiment's rate. Throws InputError or FileError.
+std::vector<Clip> naturalClips(const Experiment& experiment, Progress& progress);
+/// Deterministic for a document, its files and the model weights. Throws InputError, FileError,
+/// NumericError, CancelledError.
+ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
+                               Progress& progress);
+
+}  // namespace marey

@@ -1,0 +1,23 @@
+// From what an experiment gave to what a report shows.
+#pragma once
+
+#include <string>
+
+#include "base/job.h"
+#include "experiment/run.h"
+#include "report/report_data.h"
+
+namespace marey::report {
+
+/// Figures and tables of an experiment. `command` goes into the recipe.
+/// Throws InputError, CancelledError.
+ReportData reportOf(const ExperimentResult& result, const std::string& command, Progress& progress);
+
+// Parts of it: the tables, and what they need.
+Table footstepTable(const ExperimentResult& result);
+Table likelihoodTable(const ExperimentResult& result);
+Table obedienceTable(const ExperimentResult& result);
+std::vector<Table> statisticTables(const ExperimentResult& result, Progress& progress);
+std::vector<DistributionPanel> distributionPanels(const ExperimentResult& result);
+
+}  // namespace marey::report

@@ -97,6 +97,7 @@ void checkScene(const SceneSpec& spec) {
 
 std::vector<Vec3> rootsOf(const Clip& clip) {
   std::vector<Vec3> roots;
+  roots.reserve(static_cast<size_t>(clip.frameCount()));
   for (int t = 0; t < clip.frameCount(); ++t) roots.push_back(clip.at(t, 0));
   return roots;
 }
@@ -204,7 +205,7 @@ Camera SceneRenderer::Internals::fitted(std::vector<Vec3> points,
   const auto fit = [&] {
     return fitCamera(points, travel(), spec.view, spec.orthographic, frame, elevation);
   };
-  const Camera first = fit();
+  Camera first = fit();
   if (!spec.scaleBar) return first;
   // The bar lies in front of the figures as seen from this direction, so it needs a camera first.
   placedBar = scaleBarFor(spec.view, first, points);
@@ -223,7 +224,9 @@ void SceneRenderer::Internals::fitFollowing() {
   if (following) return;
   std::vector<Vec3> points;
   const Vec3 start = middleAt(0.0);
-  for (double t = 0.0; t < longestS(spec); t += 0.1) {
+  const int moments = static_cast<int>(std::ceil(10.0 * longestS(spec)));
+  for (int k = 0; k < moments; ++k) {
+    const double t = 0.1 * k;
     const Vec3 shift = middleAt(t) - start;
     for (const Vec3& p : outline(figuresAt(t))) points.emplace_back(p - shift);
   }
@@ -255,6 +258,7 @@ Rendered SceneRenderer::Internals::draw(const Layer& layer, bool withFloor, cons
 
 void SceneRenderer::Internals::castShadows(const std::vector<Figure>& figures) {
   std::vector<Caster> casters;
+  casters.reserve(figures.size());
   for (const Figure& f : figures) casters.push_back({&shapes[f.motion], f.pose, f.opacity});
   const FloorImage shadows = paintShadows(casters, slant());
   const FloorArea& a = shadows.area;

@@ -110,6 +110,15 @@ std::vector<std::string> linesOf(const Arrays& arrays, const std::string& key) {
   return out;
 }
 
+/// Joint numbers; an array of another type may hold them too.
+std::vector<int64_t> wholeNumbers(const Tensor& tensor, const Place& place) {
+  try {
+    return tensor.toInt64();
+  } catch (const NumericError& e) {
+    throw InputError(place, "joint numbers", e.what());
+  }
+}
+
 std::vector<Vec3> vectors(const Tensor& tensor) {
   const std::vector<float> values = tensor.toFloats();
   std::vector<Vec3> out(values.size() / 3);
@@ -137,14 +146,16 @@ Skeleton ownSkeleton(const Arrays& arrays, const std::string& origin, int64_t jo
   if (static_cast<int64_t>(out.names.size()) != joints)
     throwInput(placeOf(origin, "joint_names"), fmt::format("{} lines", joints), "{}",
                out.names.size());
-  for (const int64_t parent : need(arrays, "parents", origin, {joints}).toInt64()) {
+  for (const int64_t parent :
+       wholeNumbers(need(arrays, "parents", origin, {joints}), placeOf(origin, "parents"))) {
     if (parent < -1 || parent >= joints)
       throwInput(placeOf(origin, "parents"), "joint numbers or -1", "{}", parent);
     out.parents.push_back(static_cast<int>(parent));
   }
   out.offsets = vectors(need(arrays, "offsets", origin, {joints, 3}));
   if (!arrays.contains("end_site_parents")) return out;
-  const std::vector<int64_t> sites = need(arrays, "end_site_parents", origin, {-1}).toInt64();
+  const std::vector<int64_t> sites = wholeNumbers(need(arrays, "end_site_parents", origin, {-1}),
+                                                  placeOf(origin, "end_site_parents"));
   const auto count = static_cast<int64_t>(sites.size());
   const std::vector<Vec3> offsets = vectors(need(arrays, "end_site_offsets", origin, {count, 3}));
   for (size_t i = 0; i < sites.size(); ++i) {

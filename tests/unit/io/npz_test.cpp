@@ -156,6 +156,10 @@ TEST(MareyNpz, DamagedArraysAreRefusedByName) {
                    "end_site_parents" == std::string(name) ? "end_site_" : name);
   }
   Arrays bad = good;
+  const std::vector<float> nans(10, NAN);
+  bad["parents"] = Tensor::fromFloats({10}, nans.data());
+  expectContains(inputErrorOf([&] { clipsFromArrays(bad, "a.npz"); }), "parents");
+  bad = good;
   bad.erase("fps");
   expectContains(inputErrorOf([&] { clipsFromArrays(bad, "a.npz"); }), "fps");
 }

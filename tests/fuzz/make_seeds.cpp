@@ -77,6 +77,22 @@ void writeDogSeed(const fs::path& folder) {
   writeFileAtomically(folder / "dog", row + "\n" + row + "\n");
 }
 
+void writeExperimentSeed(const fs::path& folder) {
+  const Json document = {
+      {"title", "Walking"},
+      {"notes", ""},
+      {"natural", {"walker:4,10,1"}},
+      {"systems", {{{"name", "A"}, {"model", "a.marey"}, {"temperature", 0.9}}}},
+      {"paths", {{{"name", "ahead"}, {"path", "preset:slow"}, {"seconds", 5.0}}}},
+      {"samples", 2},
+      {"held_out_samples", 0},
+      {"seed", 7},
+      {"fps", 20.0},
+      {"feet", "LeftFoot,RightFoot"},
+      {"tolerance_step_cm_s", 1.0}};
+  writeJson(folder / "whole", document);
+}
+
 }  // namespace
 }  // namespace marey
 
@@ -93,6 +109,7 @@ int main(int argc, char** argv) {
     marey::writeAcclaimSeed(folder / "asf_amc");
     marey::writeDogSeed(folder / "dog_text");
     marey::writePickleSeeds(folder / "pickle");
+    marey::writeExperimentSeed(folder / "experiment");
   } catch (const marey::Error& e) {
     std::cerr << e.what() << "\n";
     return 1;

@@ -144,6 +144,14 @@ std::vector<Window> cutWindows(const std::vector<FeatureSequence>& sequences, in
   return out;
 }
 
+void requireFinite(const std::vector<FeatureSequence>& sequences, const std::string& origin) {
+  for (const auto& s : sequences)
+    for (long t = 0; t < s.pose.rows(); ++t)
+      if (!s.pose.row(t).allFinite() || !s.control.row(t).allFinite())
+        throw InputError({.path = origin, .frame = t + 1, .item = "sequence '" + s.name + "'"},
+                         "finite poses and controls", "NaN or infinity");
+}
+
 namespace {
 
 void storeSequences(const std::string& prefix, const std::vector<FeatureSequence>& sequences,
@@ -199,6 +207,7 @@ std::vector<FeatureSequence> loadSequences(const std::string& prefix, const Tens
                    {starts[3 * i], starts[3 * i + 1], starts[3 * i + 2]}});
     at += lengths[i];
   }
+  requireFinite(out, origin);
   return out;
 }
 

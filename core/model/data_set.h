@@ -50,6 +50,9 @@ DataSet prepareDataSet(const std::vector<Clip>& train, const std::vector<Clip>& 
 std::vector<Window> cutWindows(const std::vector<FeatureSequence>& sequences, int windowFrames,
                                int hopFrames);
 
+/// Throws InputError naming sequence and frame where a value is NaN or infinite.
+void requireFinite(const std::vector<FeatureSequence>& sequences, const std::string& origin);
+
 void writeDataSet(const std::filesystem::path& path, const DataSet& data);
 /// Throws FileError or InputError.
 DataSet readDataSet(const std::filesystem::path& path);

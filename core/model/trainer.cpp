@@ -50,16 +50,24 @@ torch::Tensor meanLogLikelihood(TrainableModel& net, const TrainingBatch& batch,
   return (net.logLikelihood(batch, dropout) * mask).sum() / count;
 }
 
-/// Name of the first parameter that (or whose gradient) is not finite; empty when all are.
-std::string nonFiniteLayer(const torch::nn::Module& net) {
+/// The first parameter that (or whose gradient) is not finite; where all are, the loss alone
+/// overflowed, and the parameter with the largest weight is the likely cause.
+std::string suspectLayer(const torch::nn::Module& net) {
+  std::string largestName;
+  double largest = -1.0;
   for (const auto& item : net.named_parameters()) {
     const auto bad = [](const torch::Tensor& t) {
       return t.defined() && !t.isfinite().all().item<bool>();
     };
     if (bad(item.value())) return item.key() + " (its weights)";
     if (bad(item.value().grad())) return item.key() + " (its gradient)";
+    const double size = item.value().abs().max().item<double>();
+    if (size > largest) {
+      largest = size;
+      largestName = item.key();
+    }
   }
-  return {};
+  return fmt::format("{} (its largest weight is {:.3g})", largestName, largest);
 }
 
 /// Clips in place, by value and then by norm, as the authors do. Returns the norm before.
@@ -94,6 +102,8 @@ class Run {
         m_config(trainingConfigFromJson(request.config.value("training", Json::object()),
                                         request.configOrigin)),
         m_device(request.device == "cuda" ? torch::kCUDA : torch::kCPU) {
+    requireFinite(data.train, "training data");
+    requireFinite(data.test, "test data");
     if (request.device != "cpu" && request.device != "cuda")
       throw UsageError("--device: expected cpu or cuda, found '" + request.device + "'");
     if (request.device == "cuda" && !torch::cuda::is_available())
@@ -225,12 +235,10 @@ class Run {
   void skip(const TrainableModel& net) {
     ++m_skipped;
     if (++m_state.nonFinite < kNonFiniteLimit) return;
-    const std::string layer = nonFiniteLayer(net);
     throw NumericError(fmt::format(
         "training: {} steps in a row gave a loss or gradient that is not finite; first bad layer: "
-        "{}. "
-        "The last checkpoint is kept; try a lower learning rate",
-        kNonFiniteLimit, layer.empty() ? "the loss itself (inputs out of range)" : layer));
+        "{}. The last checkpoint is kept; try a lower learning rate",
+        kNonFiniteLimit, suspectLayer(net)));
   }
 
   void updateAverage(const TrainableModel& net) {

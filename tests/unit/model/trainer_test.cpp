@@ -1,0 +1,229 @@
+// Training runs and stored models.
+#include "model/trainer.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "tiny_run.h"
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace marey {
+namespace {
+
+using test::TempFolder;
+
+// ---- Stored models
+
+TEST(StoredModel, LoadsWithItsFactsAndSavesTheSameTensors) {
+  const TempFolder folder;
+  writeTensorFile(folder / "m.marey", test::tinyFile());
+  const auto model = loadModel((folder / "m.marey").string(), test::families());
+  EXPECT_EQ(model->info().variant, "tiny");
+  EXPECT_EQ(model->info().context, 3);
+  EXPECT_EQ(model->info().lookahead, 1);
+  EXPECT_EQ(model->info().poseDim, 63);
+  EXPECT_EQ(*model->info().skeleton, *walkerSkeleton());
+  EXPECT_EQ(model->info().provenance["steps"], 3);
+  const TensorFile saved = model->save();
+  ASSERT_EQ(saved.tensors.size(), test::tinyFile().tensors.size());
+  for (const auto& [name, tensor] : saved.tensors)
+    EXPECT_EQ(tensor.bytes, test::tinyFile().tensors.at(name).bytes) << name;
+}
+
+const std::string kBias = "weights/flow.step1_actnorm.bias";
+
+/// The message with which a damaged model is refused.
+std::string refusal(const std::function<void(TensorFile&)>& damage) {
+  const TempFolder folder;
+  TensorFile file = test::tinyFile();
+  damage(file);
+  writeTensorFile(folder / "damaged.marey", file);
+  return test::messageOf<InputError>(
+      [&] { loadModel((folder / "damaged.marey").string(), test::families()); });
+}
+
+void expectNames(const std::string& message, const std::string& part) {
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+  EXPECT_NE(message.find("damaged.marey"), std::string::npos) << message;
+}
+
+TEST(StoredModel, AMissingTensorIsRefused) {
+  expectNames(refusal([](TensorFile& f) { ASSERT_EQ(f.tensors.erase(kBias), 1u); }),
+              "flow.step1_actnorm.bias");
+}
+
+TEST(StoredModel, AnExtraTensorIsRefused) {
+  expectNames(refusal([](TensorFile& f) { f.tensors["weights/flow.more"] = f.tensors.at(kBias); }),
+              "flow.more");
+}
+
+TEST(StoredModel, ATensorOfAnotherShapeIsRefused) {
+  const std::vector<float> values(62, 0.f);
+  expectNames(
+      refusal([&](TensorFile& f) { f.tensors[kBias] = Tensor::fromFloats({62}, values.data()); }),
+      "flow.step1_actnorm.bias");
+}
+
+TEST(StoredModel, ANonFiniteWeightIsRefused) {
+  for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
+    std::vector<float> values(63, 0.f);
+    values[17] = bad;
+    expectNames(
+        refusal([&](TensorFile& f) { f.tensors[kBias] = Tensor::fromFloats({63}, values.data()); }),
+        "flow.step1_actnorm.bias");
+  }
+}
+
+TEST(StoredModel, AStandardDeviationOfZeroIsRefused) {
+  std::vector<float> values(63, 1.f);
+  values[5] = 0.f;
+  expectNames(refusal([&](TensorFile& f) {
+                f.tensors["standardiser/pose_std"] = Tensor::fromFloats({63}, values.data());
+              }),
+              "pose_std");
+}
+
+TEST(StoredModel, AnotherFamilyOrKindIsRefused) {
+  expectNames(refusal([](TensorFile& f) { f.metadata["family"] = "diffusion"; }), "diffusion");
+  expectNames(refusal([](TensorFile& f) { f.metadata["kind"] = "dataset"; }), "dataset");
+}
+
+TEST(StoredModel, AConfigurationOfOtherWidthsIsRefused) {
+  expectNames(refusal([](TensorFile& f) { f.metadata["config"]["pose_dim"] = 60; }), "60");
+  EXPECT_FALSE(refusal([](TensorFile& f) { f.metadata["config"]["hidden"] = 9; }).empty());
+}
+
+TEST(StoredModel, ACutFileIsRefused) {
+  const TempFolder folder;
+  const std::string whole = serialise(test::tinyFile());
+  for (const size_t size : {size_t{0}, size_t{7}, whole.size() / 2, whole.size() - 1}) {
+    std::ofstream(folder / "cut.marey", std::ios::binary) << whole.substr(0, size);
+    EXPECT_THROW(loadModel((folder / "cut.marey").string(), test::families()), InputError) << size;
+  }
+  EXPECT_THROW(loadModel((folder / "none.marey").string(), test::families()), FileError);
+}
+
+// ---- Runs
+
+/// Rows of a run's log without the column of wall-clock seconds.
+std::vector<std::string> logRows(const std::filesystem::path& run) {
+  std::istringstream in(test::slurp(run / "log.csv"));
+  std::vector<std::string> out;
+  for (std::string line; std::getline(in, line);) {
+    const size_t first = line.find(','), second = line.find(',', first + 1);
+    out.push_back(line.substr(0, first) + line.substr(second));
+  }
+  return out;
+}
+
+TEST(Trainer, ABrokenAndResumedRunIsTheSameAsAnUnbrokenOne) {
+  const TempFolder folder;
+  const auto whole = test::trainTiny(test::tinyRequest(folder / "whole"));
+  TrainRequest first = test::tinyRequest(folder / "broken");
+  first.steps = 3;
+  EXPECT_EQ(test::trainTiny(first).steps, 3);
+  TrainRequest second = test::tinyRequest(folder / "broken");
+  second.resume = true;
+  const auto resumed = test::trainTiny(second);
+  EXPECT_EQ(resumed.steps, 6);
+  const auto a = readTensorFile(whole.last), b = readTensorFile(resumed.last);
+  ASSERT_EQ(a.tensors.size(), b.tensors.size());
+  for (const auto& [name, tensor] : a.tensors) EXPECT_EQ(tensor.bytes, b.tensors.at(name).bytes);
+  EXPECT_NE(a.tensors.at(kBias).bytes, test::tinyFile().tensors.at(kBias).bytes) << "no training";
+  EXPECT_EQ(logRows(folder / "whole"), logRows(folder / "broken"));
+  EXPECT_EQ(logRows(folder / "whole").size(), 3u);  // header and two checkpoints
+  EXPECT_EQ(whole.validBitsPerFrame, resumed.validBitsPerFrame);
+  EXPECT_EQ(whole.testNatsPerFrame, resumed.testNatsPerFrame);
+}
+
+TEST(Trainer, TrainingMakesTheDataMoreLikely) {
+  const TempFolder folder;
+  TrainRequest request = test::tinyRequest(folder / "run");
+  request.config["training"]["steps"] = 30;
+  request.config["training"]["checkpoint_every"] = 10;
+  request.config["training"]["ema"] = 0.0;
+  request.config["model"]["dropout"] = 0.0;
+  test::trainTiny(request);
+  std::vector<double> bits;
+  for (const auto& row : logRows(folder / "run")) {
+    if (row.starts_with("step")) continue;
+    std::istringstream in(row);
+    std::string field;
+    for (int i = 0; i < 3; ++i) std::getline(in, field, ',');
+    bits.push_back(std::stod(field));
+  }
+  ASSERT_EQ(bits.size(), 3u);
+  EXPECT_LT(bits[1], bits[0]);
+  EXPECT_LT(bits[2], bits[1]);
+}
+
+TEST(Trainer, AFolderWithARunIsRefusedWithoutResume) {
+  const TempFolder folder;
+  TrainRequest request = test::tinyRequest(folder / "run");
+  request.steps = 1;
+  test::trainTiny(request);
+  EXPECT_THROW(test::trainTiny(request), InputError);
+}
+
+TEST(Trainer, ResumingNothingOrAnotherRunIsRefused) {
+  const TempFolder folder;
+  TrainRequest request = test::tinyRequest(folder / "run");
+  request.resume = true;
+  EXPECT_THROW(test::trainTiny(request), FileError);
+  request.resume = false;
+  request.steps = 1;
+  test::trainTiny(request);
+  request.resume = true;
+  request.seed = 2;
+  const auto message = test::messageOf<InputError>([&] { test::trainTiny(request); });
+  EXPECT_NE(message.find("seed"), std::string::npos) << message;
+}
+
+TEST(Trainer, NonFiniteDataAreRefusedWithTheirClipAndFrame) {
+  const TempFolder folder;
+  DataSet data = test::tinyData();
+  data.train[2].pose(5, 7) = std::nanf("");
+  const auto message = test::messageOf<InputError>(
+      [&] { test::trainTiny(test::tinyRequest(folder / "run"), data); });
+  EXPECT_NE(message.find("'" + data.train[2].name + "'"), std::string::npos) << message;
+  EXPECT_NE(message.find("frame 6"), std::string::npos) << message;
+}
+
+TEST(Trainer, ADivergingRunEndsWithTheNameOfALayer) {
+  const TempFolder folder;
+  TrainRequest request = test::tinyRequest(folder / "run");
+  request.config["training"]["learning_rate"] = 1e30;
+  request.config["training"]["schedule"] = "fixed";
+  request.config["training"]["steps"] = 20;
+  const auto message = test::messageOf<NumericError>([&] { test::trainTiny(request); });
+  EXPECT_NE(message.find("5 steps"), std::string::npos) << message;
+  EXPECT_NE(message.find("flow.step"), std::string::npos) << message;
+}
+
+TEST(Trainer, AStoppedRunLeavesACheckpointToGoOnFrom) {
+  const TempFolder folder;
+  std::stop_source stop;
+  Progress progress([&](double, std::string_view) { stop.request_stop(); }, stop.get_token());
+  EXPECT_THROW(
+      train(test::tinyData(), test::tinyRequest(folder / "run"), test::families(), progress),
+      CancelledError);
+  TrainRequest request = test::tinyRequest(folder / "run");
+  request.resume = true;
+  EXPECT_EQ(test::trainTiny(request).steps, 6);
+}
+
+TEST(Trainer, WindowsShorterThanTheContextAndUnknownDevicesAreRefused) {
+  const TempFolder folder;
+  TrainRequest request = test::tinyRequest(folder / "run");
+  request.config["training"]["window_s"] = 0.2;
+  EXPECT_THROW(test::trainTiny(request), InputError);
+  request = test::tinyRequest(folder / "run");
+  request.device = "abacus";
+  EXPECT_THROW(test::trainTiny(request), UsageError);
+}
+
+}  // namespace
+}  // namespace marey

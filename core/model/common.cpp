@@ -71,8 +71,30 @@ FeatureSpec featureSpecFromJson(const Json& value, const std::string& origin) {
 Json toJson(const Skeleton& skeleton) {
   Json offsets = Json::array();
   for (const auto& o : skeleton.offsets) offsets.push_back({o.x(), o.y(), o.z()});
-  return {{"names", skeleton.names}, {"parents", skeleton.parents}, {"offsets_m", offsets}};
+  Json ends = Json::array();
+  for (const auto& e : skeleton.endSites)
+    ends.push_back(
+        {{"parent", e.parent}, {"offset_m", {e.offset.x(), e.offset.y(), e.offset.z()}}});
+  return {{"names", skeleton.names},
+          {"parents", skeleton.parents},
+          {"offsets_m", offsets},
+          {"end_sites", ends}};
 }
+
+namespace {
+
+Skeleton::EndSite endSiteFromJson(const Json& value, const std::string& origin, int joints) {
+  JsonReader reader(value, origin, "skeleton.end_sites.");
+  const auto parent = reader.required<int>("parent");
+  const auto offset = reader.required<std::vector<float>>("offset_m");
+  reader.finish();
+  if (parent < 0 || parent >= joints)
+    throwInput(reader.place("parent"), fmt::format("a joint below {}", joints), "{}", parent);
+  if (offset.size() != 3) throwInput(reader.place("offset_m"), "3 values", "{}", offset.size());
+  return {parent, {offset[0], offset[1], offset[2]}};
+}
+
+}  // namespace
 
 std::shared_ptr<const Skeleton> skeletonFromJson(const Json& value, const std::string& origin) {
   JsonReader reader(value, origin, "skeleton.");
@@ -83,6 +105,10 @@ std::shared_ptr<const Skeleton> skeletonFromJson(const Json& value, const std::s
     if (o.size() != 3) throwInput(reader.place("offsets_m"), "3 values per joint", "{}", o.size());
     out->offsets.emplace_back(o[0], o[1], o[2]);
   }
+  // Files written before end sites were kept have none.
+  if (reader.has("end_sites"))
+    for (const Json& end : reader.raw("end_sites"))
+      out->endSites.push_back(endSiteFromJson(end, origin, out->jointCount()));
   validate(*out, origin);
   return out;
 }

@@ -1,7 +1,9 @@
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <set>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/command.h"
 #include "cli/readers.h"
@@ -71,15 +73,19 @@ class Converter {
     Progress progress = m_context.progress("converting");
     const fs::path out(m_options.out);
     const bool folder = isFolder(out);
+    // All files of a folder or none: a later input may turn out to be unreadable.
+    if (folder) m_staged.emplace(out);
     for (size_t i = 0; i < files.size(); ++i) {
       progress.throwIfCancelled();
       const std::vector<Clip> clips = io::readClips(files[i], m_options.read);
       if (!folder && (files.size() > 1 || clips.size() > 1))
         throw UsageError(
             fmt::format("--out: expected a folder for several clips, found '{}'", m_options.out));
-      for (const Clip& clip : clips) write(clip, files[i], folder ? inFolder(out, clip) : out);
+      for (const Clip& clip : clips)
+        write(clip, files[i], folder ? inFolder(m_staged->path(), clip) : out);
       progress.report(static_cast<double>(i + 1) / static_cast<double>(files.size()));
     }
+    if (folder) m_staged->commit();
     return {{"written", m_written}};
   }
 
@@ -99,12 +105,14 @@ class Converter {
     write.recipe = {{"command", m_context.commandLine}, {"input", from.string()}};
     if (!m_options.frames.empty()) write.recipe["frames"] = m_options.frames;
     if (m_options.fps > 0.0) write.recipe["resampled_to_fps"] = m_options.fps;
-    for (const fs::path& path : io::writeClip(out, to, write)) m_written.push_back(path.string());
+    for (const fs::path& path : io::writeClip(out, to, write))
+      m_written.push_back((m_staged ? fs::path(m_options.out) / path.filename() : path).string());
   }
 
   const Context& m_context;
   const ConvertOptions& m_options;
   FrameRange m_range;
+  std::optional<StagedFolder> m_staged;
   std::set<std::string> m_names;
   std::vector<std::string> m_written;
 };

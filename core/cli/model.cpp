@@ -21,7 +21,7 @@ struct Options {
 
 ModelInfo describeConfig(const std::string& path) {
   const Json config = readJson(path);
-  return familyNamed(config.is_object() ? config.value("family", "moglow") : "moglow",
+  return familyNamed(JsonReader(config, path).optional<std::string>("family", "moglow"),
                      modelFamilies(), path)
       .describe(config, path);
 }

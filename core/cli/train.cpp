@@ -1,4 +1,5 @@
 // marey train: a model from a configuration and a data set.
+#include <cmath>
 #include <memory>
 
 #include "families.h"
@@ -23,6 +24,9 @@ Json finiteOrNull(double value) {
 void run(Options& o, const Context& context) {
   o.request.config = readJson(o.config);
   o.request.configOrigin = o.config;
+  JsonReader names(o.request.config, o.config);
+  names.required<std::string>("family");
+  names.optional<std::string>("name", "");
   o.request.seed = context.seed;
   o.request.command = context.commandLine;
   if (o.steps > 0) o.request.steps = o.steps;
@@ -37,11 +41,14 @@ void run(Options& o, const Context& context) {
                      {"test_nats_per_frame", finiteOrNull(result.testNatsPerFrame)},
                      {"best", result.best.string()},
                      {"last", result.last.string()}};
-  context.print(json, fmt::format("{} steps; {:.1f} bits per frame in training, {:.1f} at best in "
-                                  "validation; held-out clips "
-                                  "{:.1f} nats per frame (poses in metres)\n{}",
-                                  result.steps, result.trainBitsPerFrame, result.validBitsPerFrame,
-                                  result.testNatsPerFrame, result.best.string()));
+  std::string text = fmt::format("{} steps; {:.1f} bits per frame in training", result.steps,
+                                 result.trainBitsPerFrame);
+  if (std::isfinite(result.validBitsPerFrame))
+    text += fmt::format(", {:.1f} at best in validation", result.validBitsPerFrame);
+  if (std::isfinite(result.testNatsPerFrame))
+    text += fmt::format("; held-out clips {:.1f} nats per frame (poses in metres)",
+                        result.testNatsPerFrame);
+  context.print(json, text + "\n" + result.best.string());
 }
 
 }  // namespace

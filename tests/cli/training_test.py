@@ -1,0 +1,122 @@
+"""What a killed run, a repeated run and a prolonged run have in common: the same numbers."""
+import re
+import signal
+import subprocess
+import time
+
+from support import BINARY, Case, SharedModelCase, main, marey, read_tensors
+
+STEPS = 120
+
+
+class KilledTraining(Case):
+    def setUp(self):
+        super().setUp()
+        self.data = self.prepared(self.walker())
+        self.config = self.tiny_config(steps=STEPS, checkpoint_every=5)
+
+    def words(self, run, *more):
+        return [BINARY, "train", str(self.config), "--data", str(self.data), "--out",
+                str(self.dir / run), "--threads", "1", "--quiet", *more]
+
+    def finish(self, *words):
+        done = subprocess.run(words, capture_output=True, text=True, timeout=250, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def interrupt(self, run, number):
+        """Starts a run, sends the signal after its second checkpoint; the process that ended."""
+        log = self.dir / run / "log.csv"
+        process = subprocess.Popen(self.words(run), stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        until = time.monotonic() + 100
+        while not log.exists() or len(log.read_text().splitlines()) < 3:
+            self.assertIsNone(process.poll(), "ended before it could be stopped")
+            self.assertLess(time.monotonic(), until)
+            time.sleep(0.005)
+        process.send_signal(number)
+        process.wait(timeout=60)
+        return process
+
+    def stored_step(self, run):
+        return int(re.search(r'"step":(\d+)', read_tensors(
+            self.dir / run / "state.marey")[0]["marey"])[1])
+
+    def logged_steps(self, run):
+        return [line.split(",")[0] for line in (self.dir / run / "log.csv").read_text()
+                .splitlines()]
+
+    def assert_same_tensors(self, left, right, *names):
+        for name in names:
+            a = read_tensors(self.dir / left / name)[1]
+            b = read_tensors(self.dir / right / name)[1]
+            self.assertGreater(len(a), 10)
+            self.assertEqual(sorted(a), sorted(b))
+            for key in a:
+                self.assertEqual(a[key], b[key], f"{name}: {key}")
+    def test_a_killed_run_that_is_resumed_ends_as_an_unbroken_one(self):
+        killed = self.interrupt("killed", signal.SIGKILL)
+        self.assertEqual(killed.returncode, -signal.SIGKILL)
+        self.assertLess(self.stored_step("killed"), STEPS)
+        before = read_tensors(self.dir / "killed" / "last.marey")[1]
+        self.finish(*self.words("killed", "--resume"))
+        self.finish(*self.words("unbroken"))
+        self.assertEqual(self.stored_step("killed"), STEPS)
+        self.assert_same_tensors("killed", "unbroken", "last.marey", "best.marey", "state.marey")
+        self.assertEqual(self.logged_steps("killed"), self.logged_steps("unbroken"))
+        self.assertNotEqual(before, read_tensors(self.dir / "killed" / "last.marey")[1])
+
+    def test_an_interrupted_run_saves_says_so_and_can_be_resumed(self):
+        stopped = self.interrupt("stopped", signal.SIGINT)
+        self.assertEqual(stopped.returncode, 1)
+        self.assertTrue(stopped.stderr.read().strip())
+        self.assertEqual([p.name for p in (self.dir / "stopped").iterdir()
+                          if "partial" in p.name], [])
+        self.assertLess(self.stored_step("stopped"), STEPS)
+        self.finish(*self.words("stopped", "--resume"))
+        self.finish(*self.words("unbroken"))
+        # Not the best one: the stop adds a validation that the unbroken run has not.
+        self.assert_same_tensors("stopped", "unbroken", "last.marey", "state.marey")
+
+    def test_a_run_is_not_overwritten_and_another_one_is_not_resumed(self):
+        self.finish(*self.words("run", "--steps", "2"))
+        train = ["train", self.config, "--data", self.data, "--out", self.dir / "run", "--quiet"]
+        self.assert_refused(train, "run", "--resume")
+        self.assert_refused([*train, "--resume", "--seed", "9"], "state.marey", "seed")
+        other = self.tiny_config(name="other.json", model={"hidden": 12}, steps=STEPS,
+                                 checkpoint_every=5)
+        train[1] = other
+        self.assert_refused([*train, "--resume"], "state.marey", "model")
+        train[5:6] = [self.dir / "fresh", "--resume"]
+        self.assert_refused(train, "state.marey", "nothing to resume")
+
+
+class Sampling(SharedModelCase):
+    def sample(self, name, count, *more):
+        out = self.dir / name
+        done = marey("sample", self.model, "--path", "preset:figure-eight", "--seconds", 1, "-n",
+                     count, "--out", out, "--quiet", *more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        clips = {p.name: p.read_bytes() for p in out.glob("*.bvh")}
+        self.assertEqual(len(clips), count)
+        return clips
+
+    def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(self):
+        first = self.sample("first", 3, "--seed", 4)
+        self.assertEqual(first, self.sample("again", 3, "--seed", 4))
+        other = self.sample("other", 3, "--seed", 5)
+        for name, content in first.items():
+            self.assertNotEqual(content, other[name])
+        self.assertEqual(len(set(first.values())), 3)
+
+    def test_fewer_samples_are_the_first_of_more_whatever_the_threads(self):
+        few = self.sample("few", 3, "--seed", 4, "--threads", 1)
+        many = self.sample("many", 5, "--seed", 4, "--threads", 2)
+        self.assertEqual(few, {name: many[name] for name in few})
+
+    def test_temperature_zero_leaves_nothing_random(self):
+        cold = self.sample("cold", 2, "--temperature", 0)
+        self.assertEqual(len(set(cold.values())), 1)
+
+
+if __name__ == "__main__":
+    main()

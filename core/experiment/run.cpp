@@ -1,8 +1,10 @@
 #include "experiment/run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/error.h"
 #include "experiment/path_choice.h"
@@ -14,6 +16,8 @@ namespace {
 
 /// Samples of different stages of one experiment take different latents.
 constexpr int kHeldOutSampleBase = 1000000;
+/// Natural clips whose control is followed in one batch.
+constexpr size_t kClipsTogether = 64;
 
 double seconds(std::chrono::steady_clock::time_point from) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
@@ -27,30 +31,47 @@ void checkRate(const MotionModel& model, const Experiment& experiment) {
         "{}", experiment.fps);
 }
 
-/// Held-out samples: along each natural clip's own control.
+/// Along each natural clip's own control. Clips of similar length go together.
 void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vector<Clip>& natural,
                    SystemResult& out, Progress& progress) {
+  std::vector<SampleRequest> requests;
+  for (size_t i = 0; i < natural.size(); ++i) {
+    requests.push_back(requestAlongClip(model, natural[i], false));
+    requests.back().samples = e.heldOutSamples;
+    requests.back().seed = e.seed;
+    requests.back().temperature = out.temperature;
+    requests.back().firstSample = kHeldOutSampleBase + static_cast<int>(i) * e.heldOutSamples;
+  }
+  std::vector<size_t> order(natural.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return requests[a].path.size() < requests[b].path.size();
+  });
+  std::vector<std::vector<FeatureSequence>> sampled(natural.size());
   double frames = 0.0;
   const auto begin = std::chrono::steady_clock::now();
-  for (size_t i = 0; i < natural.size(); ++i) {
-    progress.throwIfCancelled();
-    SampleRequest request = requestAlongClip(model, natural[i], false);
-    request.samples = e.heldOutSamples;
-    request.seed = e.seed;
-    request.temperature = out.temperature;
-    request.firstSample = kHeldOutSampleBase + static_cast<int>(i) * e.heldOutSamples;
-    Progress quiet;
-    for (FeatureSequence& sequence : sampleSequences(model, request, quiet)) {
-      out.heldOutScores.push_back(scoreSequence(model, sequence));
-      out.heldOut.push_back(sampledClip(model, sequence));
-      out.heldOut.back().name = natural[i].name + "/" + sequence.name;
-      out.heldOutPaths.push_back(request.path);
-      frames += sequence.frameCount();
+  for (size_t first = 0; first < order.size(); first += kClipsTogether) {
+    const size_t last = std::min(first + kClipsTogether, order.size());
+    std::vector<SampleRequest> batch;
+    for (size_t i = first; i < last; ++i) batch.push_back(requests[order[i]]);
+    Progress part = progress.part(static_cast<double>(first) / static_cast<double>(order.size()),
+                                  static_cast<double>(last) / static_cast<double>(order.size()));
+    auto results = sampleSequences(model, batch, part);
+    for (size_t i = first; i < last; ++i) {
+      frames += static_cast<double>(e.heldOutSamples) *
+                static_cast<double>(requests[order[i]].path.size());
+      sampled[order[i]] = std::move(results[i - first]);
     }
-    progress.report(static_cast<double>(i + 1) / static_cast<double>(natural.size()),
-                    out.name + ": held-out control");
   }
   out.framesPerSecond = frames / seconds(begin);
+  for (size_t i = 0; i < natural.size(); ++i)
+    for (const FeatureSequence& sequence : sampled[i]) {
+      if (sequence.frameCount() > model.info().context)
+        out.heldOutScores.push_back(scoreSequence(model, sequence));
+      out.heldOut.push_back(sampledClip(model, sequence));
+      out.heldOut.back().name = natural[i].name + "/" + sequence.name;
+      out.heldOutPaths.push_back(requests[i].path);
+    }
 }
 
 void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& out,

@@ -23,20 +23,77 @@ Matrix paddedControl(const Matrix& own, const Matrix& startControl, int before, 
   return out;
 }
 
-/// The rows t - context .. t + lookahead in one row, the same for every sample.
-Matrix windowFor(const Matrix& control, long first, long rows, int samples) {
-  const Eigen::Map<const Eigen::RowVectorXf> flat(control.row(first).data(), rows * control.cols());
-  return flat.replicate(samples, 1);
+/// The rows t - context .. t + lookahead in one row; the last rows again beyond the end.
+Eigen::RowVectorXf windowAt(const Matrix& control, long first, long rows) {
+  const long from = std::min(first, control.rows() - rows);
+  return Eigen::Map<const Eigen::RowVectorXf>(control.row(from).data(), rows * control.cols());
 }
 
-void checkFinite(const Matrix& poses, const SampleRequest& request, int frame) {
-  if (poses.allFinite()) return;
+void check(const ModelInfo& info, const SampleRequest& r) {
+  if (r.path.empty()) throw InputError({.path = "path"}, "at least one frame", "none");
+  if (r.samples < 1) throwInput({.path = "samples"}, "at least one", "{}", r.samples);
+  if (info.controlDim != 3)
+    throwInput({.path = info.variant}, "a model that is controlled by a path (3 values per frame)",
+               "{} control values", info.controlDim);
+  if (r.startPoses.rows() == 0) return;
+  if (r.startPoses.rows() != info.context || r.startPoses.cols() != info.poseDim)
+    throwInput({.path = "start poses"}, fmt::format("{} x {}", info.context, info.poseDim),
+               "{} x {}", r.startPoses.rows(), r.startPoses.cols());
+}
+
+/// One request on its way: its rows of the batch, its control, its warm-up.
+struct Lane {
+  const SampleRequest* request = nullptr;
+  int firstRow = 0;
+  int warmUp = 0;
+  Matrix control;
+  int frames() const { return warmUp + static_cast<int>(request->path.size()); }
+};
+
+std::vector<Lane> lanesOf(const ModelInfo& info, std::span<const SampleRequest> requests) {
+  std::vector<Lane> out;
+  int row = 0;
+  for (const SampleRequest& request : requests) {
+    check(info, request);
+    const bool warm = request.startPoses.rows() > 0;
+    Lane lane{&request,
+              row,
+              warm ? 0 : static_cast<int>(std::lround(request.warmUpS * info.features.fps)),
+              {}};
+    lane.control = paddedControl(controlFromTrajectory(request.path), request.startControl,
+                                 info.context + lane.warmUp, info.lookahead);
+    row += request.samples;
+    out.push_back(std::move(lane));
+  }
+  return out;
+}
+
+/// Start poses of the whole batch: a request's own, else the mean pose.
+Matrix historyOf(const ModelInfo& info, const std::vector<Lane>& lanes, int rows) {
+  if (std::all_of(lanes.begin(), lanes.end(),
+                  [](const Lane& l) { return l.request->startPoses.rows() == 0; }))
+    return {};
+  Eigen::RowVectorXf mean = Eigen::RowVectorXf::Zero(info.poseDim);
+  if (!info.standardiser.empty())
+    mean = Eigen::Map<const Eigen::RowVectorXf>(info.standardiser.poseMean.data(), info.poseDim);
+  Matrix out = mean.replicate(rows, info.context);
+  for (const Lane& lane : lanes) {
+    const Matrix& poses = lane.request->startPoses;
+    if (poses.rows() > 0)
+      out.middleRows(lane.firstRow, lane.request->samples) =
+          Eigen::Map<const Eigen::RowVectorXf>(poses.data(), poses.size())
+              .replicate(lane.request->samples, 1);
+  }
+  return out;
+}
+
+void checkFinite(const Matrix& poses, const Lane& lane, int frame) {
   for (long b = 0; b < poses.rows(); ++b)
     if (!poses.row(b).allFinite())
       throw NumericError(fmt::format(
           "sample {} left the range of numbers at frame {}: expected finite poses, found NaN or "
           "infinity (try a lower temperature)",
-          request.firstSample + b, frame));
+          lane.request->firstSample + b, frame));
 }
 
 }  // namespace
@@ -54,60 +111,63 @@ void drawLatent(uint64_t seed, int sample, int frame, double temperature, double
   for (float& value : out) value = static_cast<float>(value * scale);
 }
 
-void sampleFrames(const MotionModel& model, const SampleRequest& request, const FrameSink& sink,
-                  Progress& progress) {
+void sampleFrames(const MotionModel& model, std::span<const SampleRequest> requests,
+                  const FrameSink& sink, Progress& progress) {
   const ModelInfo& info = model.info();
-  if (request.path.empty()) throw InputError({.path = "path"}, "at least one frame", "none");
-  if (request.samples < 1) throwInput({.path = "samples"}, "at least one", "{}", request.samples);
-  if (info.controlDim != 3)
-    throwInput({.path = info.variant}, "a model that is controlled by a path (3 values per frame)",
-               "{} control values", info.controlDim);
-  const bool warm = request.startPoses.rows() > 0;
-  if (warm &&
-      (request.startPoses.rows() != info.context || request.startPoses.cols() != info.poseDim))
-    throwInput({.path = "start poses"}, fmt::format("{} x {}", info.context, info.poseDim),
-               "{} x {}", request.startPoses.rows(), request.startPoses.cols());
-  const int warmUp = warm ? 0 : static_cast<int>(std::lround(request.warmUpS * info.features.fps));
-  const Matrix control = paddedControl(controlFromTrajectory(request.path), request.startControl,
-                                       info.context + warmUp, info.lookahead);
-  Matrix history;
-  if (warm)
-    history =
-        Eigen::Map<const Eigen::RowVectorXf>(request.startPoses.data(), request.startPoses.size())
-            .replicate(request.samples, 1);
-  RolloutState state = model.start(request.samples, history);
-  const int frames = warmUp + static_cast<int>(request.path.size());
-  Matrix latent(request.samples, info.poseDim);
+  const std::vector<Lane> lanes = lanesOf(info, requests);
+  if (lanes.empty()) return;
+  const int rows = lanes.back().firstRow + lanes.back().request->samples;
+  const int window = info.context + 1 + info.lookahead;
+  int frames = 0;
+  for (const Lane& lane : lanes) frames = std::max(frames, lane.frames());
+  RolloutState state = model.start(rows, historyOf(info, lanes, rows));
+  Matrix latent(rows, info.poseDim), control(rows, window * info.controlDim);
   for (int t = 0; t < frames; ++t) {
     progress.throwIfCancelled();
-    for (int b = 0; b < request.samples; ++b)
-      drawLatent(request.seed, request.firstSample + b, t, request.temperature,
-                 model.baseDegreesOfFreedom(),
-                 {latent.row(b).data(), static_cast<size_t>(info.poseDim)});
-    const Matrix poses = model.sampleFrame(
-        state, windowFor(control, t, info.context + 1 + info.lookahead, request.samples), latent);
-    checkFinite(poses, request, t - warmUp);
-    if (t >= warmUp) sink(t - warmUp, poses);
+    for (const Lane& lane : lanes) {
+      const SampleRequest& r = *lane.request;
+      control.middleRows(lane.firstRow, r.samples) =
+          windowAt(lane.control, t, window).replicate(r.samples, 1);
+      for (int b = 0; b < r.samples; ++b)
+        drawLatent(r.seed, r.firstSample + b, t, r.temperature, model.baseDegreesOfFreedom(),
+                   {latent.row(lane.firstRow + b).data(), static_cast<size_t>(info.poseDim)});
+    }
+    const Matrix poses = model.sampleFrame(state, control, latent);
+    for (size_t i = 0; i < lanes.size(); ++i) {
+      const int frame = t - lanes[i].warmUp;
+      // A lane that has ended goes on unheard until the longest one ends.
+      if (t >= lanes[i].frames()) continue;
+      const Matrix own = poses.middleRows(lanes[i].firstRow, lanes[i].request->samples);
+      checkFinite(own, lanes[i], frame);
+      if (frame >= 0) sink(i, frame, own);
+    }
     progress.report((t + 1.0) / frames, "sampling");
   }
 }
 
+std::vector<std::vector<FeatureSequence>> sampleSequences(const MotionModel& model,
+                                                          std::span<const SampleRequest> requests,
+                                                          Progress& progress) {
+  std::vector<std::vector<FeatureSequence>> out;
+  for (const SampleRequest& request : requests) {
+    check(model.info(), request);
+    out.emplace_back();
+    for (int b = 0; b < request.samples; ++b)
+      out.back().push_back({fmt::format("sample_{:03}", request.firstSample + b),
+                            Matrix(static_cast<long>(request.path.size()), model.info().poseDim),
+                            controlFromTrajectory(request.path), request.path.front()});
+  }
+  const auto keep = [&](size_t request, int frame, const Matrix& poses) {
+    for (size_t b = 0; b < out[request].size(); ++b)
+      out[request][b].pose.row(frame) = poses.row(static_cast<long>(b));
+  };
+  sampleFrames(model, requests, keep, progress);
+  return out;
+}
+
 std::vector<FeatureSequence> sampleSequences(const MotionModel& model, const SampleRequest& request,
                                              Progress& progress) {
-  const auto frames = static_cast<long>(request.path.size());
-  const Matrix control = controlFromTrajectory(request.path);
-  std::vector<FeatureSequence> out;
-  for (int b = 0; b < request.samples; ++b)
-    out.push_back({fmt::format("sample_{:03}", request.firstSample + b),
-                   Matrix(frames, model.info().poseDim), control, request.path.front()});
-  sampleFrames(
-      model, request,
-      [&](int t, const Matrix& batch) {
-        for (size_t b = 0; b < out.size(); ++b)
-          out[b].pose.row(t) = batch.row(static_cast<long>(b));
-      },
-      progress);
-  return out;
+  return sampleSequences(model, std::span(&request, 1), progress).front();
 }
 
 Clip sampledClip(const MotionModel& model, const FeatureSequence& sequence) {

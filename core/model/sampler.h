@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "base/job.h"
@@ -23,23 +24,28 @@ struct SampleRequest {
   Matrix startControl;  ///< [context, C], with startPoses
 };
 
-/// Called with each frame's poses [samples, D] in metres.
-using FrameSink = std::function<void(int frame, const Matrix& poses)>;
+/// Called with each frame's poses [samples, D] in metres of one request.
+using FrameSink = std::function<void(size_t request, int frame, const Matrix& poses)>;
 
 /// Latent of one sample at one frame: the same bits for any batch size and thread count.
 /// `frame` counts from the first generated frame, warm-up included.
 void drawLatent(uint64_t seed, int sample, int frame, double temperature, double df,
                 std::span<float> out);
 
+/// All requests advance together as one batch; results do not depend on which are together.
 /// Memory is constant per sample: frames go to `sink` and are not kept.
 /// Throws InputError for an empty path or mismatched start poses, CancelledError,
 /// NumericError naming sample and frame when a pose is not finite.
-void sampleFrames(const MotionModel& model, const SampleRequest& request, const FrameSink& sink,
-                  Progress& progress);
+void sampleFrames(const MotionModel& model, std::span<const SampleRequest> requests,
+                  const FrameSink& sink, Progress& progress);
 
-/// The motions as a model sees them, with the path's control.
+/// The motions of one request as a model sees them, with the path's control.
 std::vector<FeatureSequence> sampleSequences(const MotionModel& model, const SampleRequest& request,
                                              Progress& progress);
+/// The motions of every request.
+std::vector<std::vector<FeatureSequence>> sampleSequences(const MotionModel& model,
+                                                          std::span<const SampleRequest> requests,
+                                                          Progress& progress);
 
 /// World motion of a sampled sequence. Throws InputError for a model without a skeleton.
 Clip sampledClip(const MotionModel& model, const FeatureSequence& sequence);

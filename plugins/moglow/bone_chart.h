@@ -1,5 +1,5 @@
-// Local coordinates of a pose along its skeleton, joint by joint from the root: an exact,
-// triangular change of variables in which constant bone lengths and planted feet are plain.
+// Local coordinates of a pose along its skeleton, from the root outwards: an exact, triangular
+// change of variables in which constant bone lengths and planted feet are plain.
 //
 // A joint's bone is seen in a frame F whose third axis is the bone's foreseen direction:
 // q = F' (x_j - x_parent), u = (q1, q2, q3 - sqrt(L^2 - q1^2 - q2^2)). A bone of constant length
@@ -18,7 +18,7 @@ namespace marey::moglow {
 
 /// What the chart knows of the body. Lengths in centimetres.
 struct BoneChart {
-  std::vector<int64_t> parents;  ///< -1 for the root, parents first
+  std::vector<int64_t> parents;  ///< -1 for joint 0 alone, parents first
   std::vector<int64_t> feet;     ///< contact joints
   torch::Tensor lengths;         ///< [J]: reference bone lengths
   torch::Tensor axes;            ///< [J, 3]: mean bone directions, unit
@@ -43,10 +43,12 @@ torch::Tensor fromChart(const BoneChart& chart, const torch::Tensor& value,
                         const torch::Tensor& foreseen, const torch::Tensor& last,
                         const FootGate& gate);
 
-/// The frames [N, 3, 3] (columns) of joint j for bones foreseen along unit vectors n [N, 3], and
-/// the chart coordinates (q1, q2) [N, 2] of a unit direction m, times length.
-torch::Tensor chartFrame(const BoneChart& chart, int64_t joint, const torch::Tensor& n);
-torch::Tensor chartPlace(const torch::Tensor& frame, const torch::Tensor& direction,
-                         const torch::Tensor& length);
+/// Where feet [K] stand in their charts: their bones now (or of `place`) and the place that they
+/// held before, both as (q1, q2) [N, K, 2], given the parents' positions now.
+struct FootPlaces {
+  torch::Tensor now, before;
+};
+FootPlaces footPlaces(const BoneChart& chart, const torch::Tensor& pose,
+                      const torch::Tensor& foreseen, const torch::Tensor& last);
 
 }  // namespace marey::moglow

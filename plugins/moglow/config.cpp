@@ -110,6 +110,7 @@ Config configFromJson(const Json& value, const std::string& origin) {
     c.footClusters = reader.optional("foot_clusters", c.footClusters);
     c.netFeatures = reader.optional("net_features", c.netFeatures);
     c.contacts = reader.optional("contacts", c.contacts);
+    c.feetPassFlow = reader.optional("feet_pass_flow", c.feetPassFlow);
   }
   // Facts that conformance files state beside the configuration.
   for (const char* key : {"batch", "frames", "scale", "split", "channels", "parameters"})
@@ -145,6 +146,7 @@ Json toJson(const Config& c) {
     out["foot_clusters"] = c.footClusters;
     out["net_features"] = c.netFeatures;
     out["contacts"] = c.contacts;
+    out["feet_pass_flow"] = c.feetPassFlow;
   }
   return out;
 }

@@ -34,9 +34,15 @@ struct Config {
   int netFeatures = 80;           ///< principal components of the history that the nets see
   int contacts = 4;               ///< feet and toes of the skeleton
 
+  /// The feet's held coordinates stay as the base has them; the flow models the rest of the body
+  /// given them. Keeps contacts as crisp in free-running motion as the base's.
+  bool feetPassFlow = false;
+
+  int passedChannels() const { return feetPassFlow ? contacts : 0; }  ///< two per foot
   int conditioning() const {
     if (poseBase == "kinematic")
-      return netFeatures + 2 * contacts * (baseOrder - 1) + 3 * baseOrder + contacts;
+      return netFeatures + 2 * contacts * (baseOrder - 1) + 3 * baseOrder + contacts +
+             passedChannels();
     return tau * poseDim + (tau + 1 + lookahead) * controlDim;
   }
   double degreesOfFreedom() const { return base == "student_t" ? df : 0.0; }

@@ -11,7 +11,10 @@ namespace {
 
 int64_t trainableParameters(const Config& c) {
   // In closed form: a paper-size network need not be built to be counted.
-  const int64_t d = c.poseDim, h = c.hidden, gates = c.cell == "lstm" ? 4 : c.cell == "gru" ? 3 : 1;
+  const int64_t d = c.poseDim - c.passedChannels(), h = c.hidden,
+                gates = c.cell == "lstm"  ? 4
+                        : c.cell == "gru" ? 3
+                                          : 1;
   const int64_t recurrent = c.cell == "feedforward" ? 0 : 1;
   int64_t net = 0;
   for (int64_t layer = 0; layer < c.layers; ++layer) {

@@ -85,25 +85,16 @@ void KinematicBase::fitForeseen(const torch::Tensor& pose, const Past& past) {
 /// Per cluster of a foot's movement: how far it is held to its last place (the centre that makes
 /// the mean log distance smallest: robust, and drawn to sharp peaks), and the scale there.
 void KinematicBase::fitGate(const torch::Tensor& pose, const Past& past) {
-  std::vector<torch::Tensor> features, places, held, scales;
-  const auto foreseen = foreseenPose(past);
-  const BoneChart body = chart();
+  std::vector<torch::Tensor> features, scales;
   for (size_t f = 0; f < m_feet.size(); ++f) {
-    const int64_t j = m_feet[f], parent = m_parents[static_cast<size_t>(j)];
-    const auto unit = [](const torch::Tensor& v) {
-      return v / v.norm(2, -1, true).clamp_min(1e-6);
-    };
-    const auto frame =
-        chartFrame(body, j, unit(foreseen.select(1, j) - foreseen.select(1, parent)));
-    const auto bone = pose.select(1, j) - pose.select(1, parent);
-    places.push_back((frame * bone.unsqueeze(-1)).sum(-2).narrow(1, 0, 2));
-    held.push_back(chartPlace(
-        frame, unit(past.poses.select(1, 0).select(1, j) - pose.select(1, parent)), m_lengths[j]));
     scales.push_back(baseScale(past, f));
     features.push_back(footFeatures(past, f));
   }
-  const auto all = torch::cat(features), place = torch::cat(places), last = torch::cat(held),
-             scale = torch::cat(scales);
+  const auto places = footPlaces(chart(), pose, foreseenPose(past), past.poses.select(1, 0));
+  // One foot's frames after the other's, as in `features`.
+  const auto place = places.now.transpose(0, 1).flatten(0, 1),
+             last = places.before.transpose(0, 1).flatten(0, 1);
+  const auto all = torch::cat(features), scale = torch::cat(scales);
   m_footCentres.copy_(clusterCentres(all, m_config.footClusters));
   const auto cluster = assignment(all, m_footCentres);
   for (int64_t k = 0; k < m_config.footClusters; ++k) {

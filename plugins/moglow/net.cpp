@@ -12,7 +12,7 @@ namespace {
 constexpr int64_t kStartFrames = 4096;
 
 nn::FlowSpec flowSpec(const Config& c) {
-  return {.channels = c.poseDim,
+  return {.channels = c.poseDim - c.passedChannels(),
           .conditioning = c.conditioning(),
           .steps = c.steps,
           .lu = c.lu,
@@ -69,10 +69,21 @@ nn::Transformed Net::toLatent(const torch::Tensor& x, const Context& context,
   const int64_t batch = x.size(0), frames = x.size(1);
   const Foresight foresight = m_base->foresee(flattened(context));
   const auto e = m_base->toInnovation(x.flatten(0, 1), foresight);
-  auto out = m_flow->toLatent(e.value.view({batch, frames, -1}),
-                              foresight.features.view({batch, frames, -1}), state);
-  out.logDet = out.logDet + e.logDet.view({batch, frames});
-  return out;
+  const auto innovation = e.value.view({batch, frames, -1});
+  const auto [passed, rest] = split(innovation);
+  auto out = m_flow->toLatent(rest, seenBy(foresight, passed), state);
+  return {torch::cat({passed, out.value}, -1), out.logDet + e.logDet.view({batch, frames})};
+}
+
+std::pair<torch::Tensor, torch::Tensor> Net::split(const torch::Tensor& innovation) const {
+  const int64_t passed = m_config.passedChannels();
+  return {innovation.narrow(-1, 0, passed),
+          innovation.narrow(-1, passed, innovation.size(-1) - passed)};
+}
+
+torch::Tensor Net::seenBy(const Foresight& foresight, const torch::Tensor& passed) const {
+  const auto features = foresight.features.view({passed.size(0), passed.size(1), -1});
+  return m_config.feetPassFlow ? torch::cat({features, passed}, -1) : features;
 }
 
 torch::Tensor Net::toData(const torch::Tensor& z, const Context& context,
@@ -80,7 +91,8 @@ torch::Tensor Net::toData(const torch::Tensor& z, const Context& context,
   if (!m_base) return m_flow->toData(z, plainConditioning(context), state);
   const int64_t batch = z.size(0), frames = z.size(1);
   const Foresight foresight = m_base->foresee(flattened(context));
-  const auto e = m_flow->toData(z, foresight.features.view({batch, frames, -1}), state);
+  const auto [passed, rest] = split(z);
+  const auto e = torch::cat({passed, m_flow->toData(rest, seenBy(foresight, passed), state)}, -1);
   return m_base->toPose(e.flatten(0, 1), foresight).view({batch, frames, -1});
 }
 
@@ -151,8 +163,8 @@ Json Net::initialise(const TrainingFrames& frames) {
     return facts;
   }
   const Foresight foresight = m_base->foresee(flattened(context));
-  m_flow->initialise(m_base->toInnovation(x, foresight).value.unsqueeze(1),
-                     foresight.features.unsqueeze(1), startOf(m_config.start));
+  const auto [passed, rest] = split(m_base->toInnovation(x, foresight).value.unsqueeze(1));
+  m_flow->initialise(rest, seenBy(foresight, passed), startOf(m_config.start));
   return facts;
 }
 

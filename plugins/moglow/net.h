@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "model/trainable.h"
 #include "moglow/config.h"
@@ -39,6 +40,10 @@ class Net : public TrainableModel {
 
  private:
   torch::Tensor plainConditioning(const Context& context) const;
+  /// Innovations [B, T, D] as the channels that pass the flow by and those that it models.
+  std::pair<torch::Tensor, torch::Tensor> split(const torch::Tensor& innovation) const;
+  /// What the flow's nets see: [B, T, F], the passed channels included.
+  torch::Tensor seenBy(const Foresight& foresight, const torch::Tensor& passed) const;
   Context contextAt(const TrainingFrames& frames, const torch::Tensor& rows) const;
 
   Config m_config;

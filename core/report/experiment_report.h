@@ -17,6 +17,7 @@ ReportData reportOf(const ExperimentResult& result, const std::string& command, 
 Table footstepTable(const ExperimentResult& result);
 Table likelihoodTable(const ExperimentResult& result);
 Table obedienceTable(const ExperimentResult& result);
+Table definitionTable();
 std::vector<Table> statisticTables(const ExperimentResult& result, Progress& progress);
 std::vector<DistributionPanel> distributionPanels(const ExperimentResult& result);
 

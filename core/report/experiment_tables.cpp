@@ -96,8 +96,7 @@ Table statisticTable(const ExperimentResult& r, const SystemResult& system, Prog
                         {"95 % interval"},
                         {"natural"},
                         {"natural 95 %"},
-                        {"noise floor"},
-                        {"definition"}}};
+                        {"noise floor"}}};
   for (const auto& s :
        stats::evaluate(stats::allStatistics(), input,
                        {.resamples = kResamples, .seed = r.experiment.seed}, progress))
@@ -107,8 +106,7 @@ Table statisticTable(const ExperimentResult& r, const SystemResult& system, Prog
                         {interval(s.low, s.high)},
                         optionalCell(s.natural),
                         {interval(s.naturalLow, s.naturalHigh)},
-                        optionalCell(s.noiseFloor),
-                        {s.definition + " [" + s.source + "]"}});
+                        optionalCell(s.noiseFloor)});
   return out;
 }
 
@@ -195,6 +193,17 @@ Table obedienceTable(const ExperimentResult& r) {
   return out;
 }
 
+Table definitionTable() {
+  Table out{.id = "definitions",
+            .title = "What the statistics are",
+            .caption = "Definition and source of every statistic of this report.",
+            .section = Section::Statistics,
+            .columns = {{"statistic"}, {"unit"}, {"definition"}, {"source"}}};
+  for (const auto& s : stats::allStatistics())
+    out.rows.push_back({{s.name}, {s.unit}, {s.definition}, {s.source}});
+  return out;
+}
+
 std::vector<Table> statisticTables(const ExperimentResult& r, Progress& progress) {
   std::vector<Table> out;
   for (const auto& s : r.systems)
@@ -204,6 +213,7 @@ std::vector<Table> statisticTables(const ExperimentResult& r, Progress& progress
           static_cast<double>(out.size() + 1) / static_cast<double>(r.systems.size()));
       out.push_back(statisticTable(r, s, part));
     }
+  if (!out.empty()) out.push_back(definitionTable());
   return out;
 }
 

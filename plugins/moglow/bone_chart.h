@@ -4,15 +4,18 @@
 // A joint's bone is seen in a frame F whose third axis is the bone's foreseen direction:
 // q = F' (x_j - x_parent), u = (q1, q2, q3 - sqrt(L^2 - q1^2 - q2^2)). A bone of constant length
 // L has u3 = 0 whatever its direction; rotation and shift keep volumes (log-determinant 0).
-// A foot's (q1, q2) are further taken relative to where the foot stood, divided by a scale that
-// shrinks with its speed, and compressed radially, w(r) = asinh(r) + r/8: a planted foot is a
-// sharp peak at 0 that a network need not learn.
+//
+// Legs stand. A knee's frame comes from bending the leg, from where the hip is now, so that the
+// foot reaches the place where it is held; q2 lies in the plane of that bend and is 0 for a planted
+// foot. A foot's (q1, q2) go through its gate (foot_gate.h), centred between where it stood and
+// where it is foreseen. If it stays, its third coordinate is held too, so that it rests when the
+// knee errs: the bone takes up the error and gives it back within some frames.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "nn/torch.h"
+#include "moglow/foot_gate.h"
 
 namespace marey::moglow {
 
@@ -25,10 +28,31 @@ struct BoneChart {
   torch::Tensor sides;           ///< [J, 3]: unit vectors at right angles to `axes`
 };
 
-/// How firmly each foot is held to its last place: per frame and foot.
+/// The joint between a foot and its hip, or -1 where the skeleton has none: bones shorter than a
+/// millimetre bend no leg.
+int64_t kneeOf(const BoneChart& chart, int64_t foot);
+
+/// Where a frame is foreseen, from history and control alone; centimetres, one frame of reference.
+struct Foreseen {
+  torch::Tensor pose;    ///< [N, J, 3]: where the body goes if no foot is held
+  torch::Tensor last;    ///< [N, feet, 3]: where the feet stood
+  torch::Tensor places;  ///< [N, feet, 3]: where the held feet stand now
+  torch::Tensor hold;    ///< [N, feet]: 0 (foreseen place) .. 1 (last place)
+  torch::Tensor way() const;  ///< [N, feet, 3]: from `last` to the foot's place in `pose`
+  std::vector<int64_t> feet;
+};
+
+/// What is foreseen of each foot in a frame, beside its place.
 struct FootGate {
-  torch::Tensor hold;   ///< [N, feet]: 0 (foreseen place) .. 1 (last place)
-  torch::Tensor scale;  ///< [N, feet]: centimetres
+  torch::Tensor hold;      ///< [N, feet]: as in Foreseen
+  torch::Tensor foreseen;  ///< [N, feet, 2]: cm, the foot's (q1, q2) without hold
+  torch::Tensor knee;      ///< [N, feet]: cm, the knee's q2 without hold
+  torch::Tensor skew;      ///< [N, feet]: -1 .. 1, how much far movements go the foreseen way
+  torch::Tensor radii;     ///< [N, feet, kGateKnots]: cm
+  /// The knee's q2 and the foot's u3 have the scale slope * (distance of the foot from its gate's
+  /// centre + slack).
+  torch::Tensor kneeSlope, boneSlope;  ///< [N, feet]
+  torch::Tensor slack;                 ///< [N, feet]: cm
 };
 
 struct Charted {
@@ -36,19 +60,36 @@ struct Charted {
   torch::Tensor logDet;  ///< [N]
 };
 
-/// pose, foreseen and last are joint positions [N, J, 3] in centimetres, in one frame.
-Charted toChart(const BoneChart& chart, const torch::Tensor& pose, const torch::Tensor& foreseen,
-                const torch::Tensor& last, const FootGate& gate);
-torch::Tensor fromChart(const BoneChart& chart, const torch::Tensor& value,
-                        const torch::Tensor& foreseen, const torch::Tensor& last,
-                        const FootGate& gate);
+/// Chart coordinates without gates [N, J, 3] of poses [N, J, 3]; feet as any other joint.
+torch::Tensor chartCoordinates(const BoneChart& chart, const torch::Tensor& pose,
+                               const Foreseen& foreseen);
 
-/// Where feet [K] stand in their charts: their bones now (or of `place`) and the place that they
-/// held before, both as (q1, q2) [N, K, 2], given the parents' positions now.
+/// The same with feet and knees through their gates, and back.
+Charted toChart(const BoneChart& chart, const torch::Tensor& pose, const Foreseen& foreseen,
+                const FootGate& gate);
+torch::Tensor fromChart(const BoneChart& chart, const torch::Tensor& value,
+                        const Foreseen& foreseen, const FootGate& gate);
+
+/// Feet in their charts, [N, feet, 3]: where they are, where they would be had they stayed, and
+/// the ways of their gates.
 struct FootPlaces {
-  torch::Tensor now, before;
+  torch::Tensor now, before, way;
 };
-FootPlaces footPlaces(const BoneChart& chart, const torch::Tensor& pose,
-                      const torch::Tensor& foreseen, const torch::Tensor& last);
+/// What is left of feet's third coordinates [..., 3] beyond their bones and their hold, for feet at
+/// a distance from their gates' centres.
+torch::Tensor footExcess(const torch::Tensor& now, const torch::Tensor& before,
+                         const torch::Tensor& length, const torch::Tensor& hold,
+                         const torch::Tensor& distance);
+
+FootPlaces footPlaces(const BoneChart& chart, const torch::Tensor& pose, const Foreseen& foreseen);
+
+/// The centres of feet's gates [..., 2] for feet that had stood at `before` [..., 3] in their
+/// charts, and the shifts of their circles [..., 2] for a way in the chart [..., 3].
+torch::Tensor gateCentre(const torch::Tensor& hold, const torch::Tensor& foreseen,
+                         const torch::Tensor& before);
+torch::Tensor gateShift(const torch::Tensor& skew, const torch::Tensor& way);
+
+/// 0 .. 1: hardly anything unless a foot is held firmly.
+torch::Tensor firmness(const torch::Tensor& hold);
 
 }  // namespace marey::moglow

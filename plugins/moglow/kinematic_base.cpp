@@ -1,5 +1,6 @@
 #include "moglow/kinematic_base.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -9,6 +10,9 @@ namespace marey::moglow {
 namespace {
 
 using torch::indexing::Slice;
+
+constexpr int64_t kFootFeatures = 19;
+constexpr double kStretch = 1.0;  ///< cm out of reach that a held foot stands
 
 /// Turns the floor coordinates of joints [N, K, J, 3] into a root frame that moved by (sideways,
 /// forward) and then turned, control [N, 3].
@@ -44,6 +48,17 @@ torch::Tensor byRegime(const torch::Tensor& value, const torch::Tensor& matrices
   return out;
 }
 
+/// Two bones above a foot, or as far up as the skeleton goes.
+int64_t hipOf(const std::vector<int64_t>& parents, int64_t foot) {
+  for (int bones = 0; bones < 2 && parents[static_cast<size_t>(foot)] >= 0; ++bones)
+    foot = parents[static_cast<size_t>(foot)];
+  return foot;
+}
+
+torch::Tensor jointIndex(const std::vector<int64_t>& joints, const torch::Tensor& like) {
+  return torch::tensor(joints, torch::kInt64).to(like.device());
+}
+
 }  // namespace
 
 KinematicBase::KinematicBase(const Config& c, const BodyFacts& body) : m_config(c) {
@@ -60,6 +75,7 @@ KinematicBase::KinematicBase(const Config& c, const BodyFacts& body) : m_config(
   for (size_t f = 0; f < m_feet.size(); ++f) {
     m_contacts.push_back(m_feet[f]);
     m_contacts.push_back(m_toes[f]);
+    m_hips.push_back(hipOf(m_parents, m_feet[f]));
     m_sides.push_back(f % 2 == 0 ? 1.f : -1.f);
   }
   std::vector<int64_t> order, rest(static_cast<size_t>(c.poseDim));
@@ -72,6 +88,12 @@ KinematicBase::KinematicBase(const Config& c, const BodyFacts& body) : m_config(
   order.insert(order.end(), rest.begin(), rest.end());
   m_order = torch::tensor(order, torch::kInt64);
   m_orderBack = m_order.argsort();
+  // The feet's first two coordinates leave their gates normal; their knees' second
+  // leaves it centred.
+  m_predictable = register_buffer("predictable", torch::ones({c.poseDim}));
+  for (const int64_t foot : m_feet)
+    for (const int64_t i : {3 * foot, 3 * foot + 1, 3 * m_parents[static_cast<size_t>(foot)] + 1})
+      m_predictable[i] = 0.f;
 
   const int64_t d = c.poseDim, joints = d / 3, contacts = static_cast<int64_t>(m_contacts.size());
   const int64_t plain = d * c.baseOrder + 3 * c.baseOrder,
@@ -94,9 +116,17 @@ KinematicBase::KinematicBase(const Config& c, const BodyFacts& body) : m_config(
   m_foreseenMean = zeros("foreseen_mean", {plain});
   m_foreseenWeight = zeros("foreseen_weight", {plain, d});
   m_foreseenBias = zeros("foreseen_bias", {d});
-  m_footCentres = zeros("foot_centres", {c.footClusters, 13});
+  m_footCentres = zeros("foot_centres", {c.footClusters, kFootFeatures});
   m_footHold = zeros("foot_hold", {c.footClusters});
-  m_footScale = register_buffer("foot_scale", torch::ones({c.footClusters}));
+  m_footSkew = zeros("foot_skew", {c.footClusters});
+  m_footRadii = register_buffer(
+      "foot_radii", torch::arange(1, kGateKnots + 1, torch::kFloat32).repeat({c.footClusters, 1}));
+  m_kneeSlope = register_buffer("knee_slope", torch::ones({c.footClusters}));
+  m_boneSlope = register_buffer("bone_slope", torch::ones({c.footClusters}));
+  m_slack = register_buffer("slack", torch::ones({c.footClusters}));
+  const auto feet = static_cast<int64_t>(m_feet.size());
+  m_footFloor = register_buffer("foot_floor", torch::full({feet}, -1e3));
+  m_reach = register_buffer("reach", torch::full({feet}, 1e3));
   m_regimeCentres =
       zeros("regime_centres",
             {c.regimes, 3 * contacts + contacts + 2 * static_cast<int64_t>(m_feet.size()) + 4});
@@ -176,35 +206,83 @@ torch::Tensor KinematicBase::footFeatures(const Past& past, size_t foot) const {
   const auto movement = [&](int64_t k, int64_t j) {
     return (p.select(1, k) - p.select(1, k + 1)).select(1, j);
   };
-  const auto now = p.select(1, 0);
-  const int64_t ankle = m_feet[foot], toe = m_toes[foot];
+  const auto now = p.select(1, 0), control = past.control;
+  const int64_t ankle = m_feet[foot], toe = m_toes[foot], other = m_feet[std::min(foot ^ 1U, m_feet.size() - 1)];
   return torch::cat({squeezed(floor(movement(0, ankle)) * side, 0.3),
                      squeezed(floor(movement(1, ankle)) * side, 0.3),
                      squeezed(movement(0, ankle).narrow(1, 1, 1), 0.3) * 0.7,
-                     now.select(1, ankle).narrow(1, 1, 1) * 0.25,
+                     now.select(1, ankle).narrow(1, 1, 1) * 0.4,
                      squeezed(floor(movement(0, toe)) * side, 0.3) * 0.7,
                      now.select(1, toe).narrow(1, 1, 1) * 0.25,
-                     floor(now.select(1, ankle) - now.select(1, 0)) * side * 0.06,
-                     squeezed(floor(movement(0, 0)) * side, 0.3) * 0.5},
+                     floor(now.select(1, ankle) - now.select(1, 0)) * side * 0.08,
+                     squeezed(floor(movement(0, 0)) * side, 0.3) * 0.5,
+                     // The other foot says when this one may leave, the control whether it has to.
+                     squeezed(floor(movement(0, other)) * side, 0.3) * 0.5,
+                     now.select(1, other).narrow(1, 1, 1) * 0.15,
+                     squeezed(control.narrow(1, 0, 2) * side, 0.3) * 0.5,
+                     torch::asinh(control.narrow(1, 2, 1) * m_sides[foot] / 0.02) * 0.3},
                     -1);
 }
 
-torch::Tensor KinematicBase::baseScale(const Past& past, size_t foot) const {
-  const auto track = past.poses.select(2, m_feet[foot]).index({Slice(), Slice(), Slice(0, 3, 2)});
+/// Lengths that a foot's radial quantiles are relative to, [N, feet] cm: small for a slow foot.
+torch::Tensor KinematicBase::footScales(const Past& past) const {
+  const auto track =
+      past.poses.index_select(2, torch::tensor(m_feet, torch::kInt64).to(past.poses.device()))
+          .index({Slice(), Slice(), Slice(), Slice(0, 3, 2)});
   const auto one = (track.select(1, 0) - track.select(1, 1)).norm(2, -1);
   const auto two = (track.select(1, 0) - track.select(1, 2)).norm(2, -1) / 2.0;
   const auto speed = torch::minimum(one, two);
   return torch::minimum(0.06 + 0.45 * speed, 0.9 + 0.02 * speed);
 }
 
-FootGate KinematicBase::gateOf(const Past& past) const {
-  std::vector<torch::Tensor> hold, scale;
-  for (size_t f = 0; f < m_feet.size(); ++f) {
-    const auto cluster = nearest(footFeatures(past, f), m_footCentres);
-    hold.push_back(m_footHold.index_select(0, cluster));
-    scale.push_back(m_footScale.index_select(0, cluster) * baseScale(past, f));
-  }
-  return {torch::stack(hold, 1), torch::stack(scale, 1)};
+torch::Tensor KinematicBase::footClusters(const Past& past) const {
+  std::vector<torch::Tensor> out;
+  for (size_t f = 0; f < m_feet.size(); ++f)
+    out.push_back(nearest(footFeatures(past, f), m_footCentres));
+  return torch::stack(out, 1);
+}
+
+Foreseen KinematicBase::foreseenOn(const Past& past, const torch::Tensor& clusters) const {
+  Foreseen out{.pose = foreseenPose(past),
+               .last = past.poses.select(1, 0).index_select(1, jointIndex(m_feet, past.poses)),
+               .places = {},
+               .hold = {},
+               .feet = m_feet};
+  const auto hips = out.pose.index_select(1, jointIndex(m_hips, out.pose));
+  const auto excess = ((out.last - hips).norm(2, -1) - m_reach).clamp_min(0.0);
+  // A foot out of reach has to come along.
+  out.hold = m_footHold.index({clusters}) * (-(excess / kStretch).square()).exp();
+  const auto places = out.last + (1.0 - out.hold).unsqueeze(-1) * out.way();
+  const auto height = torch::maximum(places.select(-1, 1), m_footFloor);
+  out.places = torch::stack({places.select(-1, 0), height, places.select(-1, 2)}, -1);
+  // A body that is about to go out of reach of the feet that it stands on stays with them.
+  const auto way = out.places - hips;
+  const auto pull = (excess.clamp_max(kStretch) * firmness(out.hold)).unsqueeze(-1) * way /
+                    way.norm(2, -1, true).clamp_min(1e-3);
+  out.pose = out.pose + pull.sum(1, true);
+  return out;
+}
+
+FootGate KinematicBase::gateOf(const Past& past, const torch::Tensor& clusters,
+                               const Foreseen& foreseen, const torch::Tensor& predicted) const {
+  const auto joints = predicted.view({predicted.size(0), -1, 3});
+  const auto places = joints.index_select(1, jointIndex(m_feet, predicted));
+  std::vector<int64_t> knees;
+  for (const int64_t foot : m_feet) knees.push_back(m_parents[static_cast<size_t>(foot)]);
+  return {.hold = foreseen.hold,
+          .foreseen = places.narrow(-1, 0, 2),
+          .knee = joints.index_select(1, jointIndex(knees, predicted)).select(-1, 1),
+          .skew = m_footSkew.index({clusters}),
+          .radii = m_footRadii.index({clusters}) * footScales(past).unsqueeze(-1),
+          .kneeSlope = m_kneeSlope.index({clusters}),
+          .boneSlope = m_boneSlope.index({clusters}),
+          .slack = m_slack.index({clusters})};
+}
+
+torch::Tensor KinematicBase::predictedChart(const torch::Tensor& rich,
+                                            const torch::Tensor& regime) const {
+  const auto ones = torch::ones({rich.size(0), 1}, rich.options());
+  return byRegime(torch::cat({rich - m_richMean, ones}, 1), m_richWeight, regime);
 }
 
 torch::Tensor KinematicBase::regimeFeatures(const Past& past) const {
@@ -240,32 +318,43 @@ Foresight KinematicBase::foresee(const BaseInput& input) const {
   const Past past = pastOf(input);
   const auto rich = richRegressors(past);
   const auto regime = nearest(regimeFeatures(past), m_regimeCentres);
-  const auto centred =
-      torch::cat({rich - m_richMean, torch::ones({rich.size(0), 1}, rich.options())}, 1);
-  const FootGate gate = gateOf(past);
+  const auto predicted = predictedChart(rich, regime);
+  const auto clusters = footClusters(past);
+  const Foreseen foreseen = foreseenOn(past, clusters);
+  const FootGate gate = gateOf(past, clusters, foreseen, predicted);
   return {netFeatures(past, rich),
-          {foreseenPose(past), past.poses.select(1, 0), gate.hold, gate.scale,
-           byRegime(centred, m_richWeight, regime), regime}};
+          {predicted * m_predictable, regime, foreseen.pose, foreseen.last, foreseen.places,
+           gate.hold, gate.foreseen, gate.knee, gate.skew, gate.radii, gate.kneeSlope,
+           gate.boneSlope, gate.slack}};
+}
+
+Foreseen KinematicBase::foreseenIn(const Parts& parts) const {
+  return {.pose = parts[2], .last = parts[3], .places = parts[4], .hold = parts[5], .feet = m_feet};
+}
+
+FootGate KinematicBase::gateIn(const Parts& parts) {
+  return {parts[5], parts[6], parts[7], parts[8], parts[9], parts[10], parts[11], parts[12]};
 }
 
 PoseBase::Innovation KinematicBase::toInnovation(const torch::Tensor& pose,
-                                                 const Foresight& f) const {
-  const auto& regime = f.parts[5];
-  const auto local =
-      toChart(chart(), toCentimetres(pose), f.parts[0], f.parts[1], {f.parts[2], f.parts[3]});
+                                                 const Foresight& foresight) const {
+  const auto& f = foresight.parts;
+  const auto local = toChart(chart(), toCentimetres(pose), foreseenIn(f), gateIn(f));
   const auto residual =
-      (local.value.flatten(1) - f.parts[4]).index_select(1, m_order.to(pose.device()));
+      (local.value.flatten(1) - f[0]).index_select(1, m_order.to(pose.device()));
   // Density of standardised poses, not of centimetres.
   const auto units = m_poseStd.log().sum() + m_config.poseDim * std::log(100.0);
-  return {byRegime(residual, m_factorInverse.transpose(1, 2), regime),
-          local.logDet + m_factorLogDet.index_select(0, regime) + units};
+  return {byRegime(residual, m_factorInverse.transpose(1, 2), f[1]),
+          local.logDet + m_factorLogDet.index_select(0, f[1]) + units};
 }
 
-torch::Tensor KinematicBase::toPose(const torch::Tensor& innovation, const Foresight& f) const {
-  const auto residual = byRegime(innovation, m_factor.transpose(1, 2), f.parts[5])
+torch::Tensor KinematicBase::toPose(const torch::Tensor& innovation,
+                                    const Foresight& foresight) const {
+  const auto& f = foresight.parts;
+  const auto residual = byRegime(innovation, m_factor.transpose(1, 2), f[1])
                             .index_select(1, m_orderBack.to(innovation.device()));
-  const auto local = (residual + f.parts[4]).view({innovation.size(0), -1, 3});
-  const auto pose = fromChart(chart(), local, f.parts[0], f.parts[1], {f.parts[2], f.parts[3]});
+  const auto local = (residual + f[0]).view({innovation.size(0), -1, 3});
+  const auto pose = fromChart(chart(), local, foreseenIn(f), gateIn(f));
   return (pose.flatten(1) / 100.0 - m_poseMean) / m_poseStd;
 }
 

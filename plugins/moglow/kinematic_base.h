@@ -4,8 +4,8 @@
 //   1. The history is moved into the present root frame (the control says how), so that a planted
 //      foot has not moved.
 //   2. The pose is expressed in the coordinates of bone_chart.h: constant bones and planted feet
-//      are plain there. How firmly a foot is held, and its scale, are looked up by clusters of its
-//      own recent movement.
+//      are plain there. How firmly a foot is held, and how far it goes otherwise, are looked up by
+//      clusters of its recent movement and its place under the body.
 //   3. The rest is a ridge regression with a covariance per regime (clusters of the movement of
 //      feet and control), shrunk towards the common one.
 //
@@ -43,22 +43,33 @@ class KinematicBase : public PoseBase {
   torch::Tensor regimeFeatures(const Past& past) const;
   torch::Tensor netFeatures(const Past& past, const torch::Tensor& rich) const;
   torch::Tensor foreseenPose(const Past& past) const;
-  FootGate gateOf(const Past& past) const;
-  torch::Tensor baseScale(const Past& past, size_t foot) const;
+  torch::Tensor footClusters(const Past& past) const;
+  Foreseen foreseenOn(const Past& past, const torch::Tensor& clusters) const;
+  FootGate gateOf(const Past& past, const torch::Tensor& clusters, const Foreseen& foreseen,
+                  const torch::Tensor& predicted) const;
+  torch::Tensor predictedChart(const torch::Tensor& rich, const torch::Tensor& regime) const;
+  torch::Tensor footScales(const Past& past) const;
   BoneChart chart() const;
+  using Parts = std::vector<torch::Tensor>;  ///< of a Foresight
+  Foreseen foreseenIn(const Parts& parts) const;
+  static FootGate gateIn(const Parts& parts);
 
   void fitChart(const torch::Tensor& pose);
   void fitForeseen(const torch::Tensor& pose, const Past& past);
-  void fitGate(const torch::Tensor& pose, const Past& past);
+  void fitHold(const torch::Tensor& pose, const Past& past);
+  void fitGate(const torch::Tensor& pose, const Past& past, const torch::Tensor& predicted);
+  void fitLimits(const torch::Tensor& pose);
+  void fitLegs(const torch::Tensor& pose, const Past& past, const torch::Tensor& predicted);
   void fitRegimes(const torch::Tensor& local, const Past& past);
   void fitWhitening(const torch::Tensor& residual, const torch::Tensor& regime);
   void fitNetFeatures(const Past& past);
 
   Config m_config;
-  std::vector<int64_t> m_parents, m_feet, m_toes, m_contacts;
+  std::vector<int64_t> m_parents, m_feet, m_toes, m_hips, m_contacts;
   std::vector<float> m_sides;  ///< +1 for a left foot, -1 for a right one
   torch::Tensor m_order;       ///< [D]: feet's held coordinates first
   torch::Tensor m_orderBack;
+  torch::Tensor m_predictable;  ///< [D]: 0 for those, 1 for the rest
   // Standardiser, in metres.
   torch::Tensor m_poseMean, m_poseStd, m_controlMean, m_controlStd;
   // Chart.
@@ -66,7 +77,8 @@ class KinematicBase : public PoseBase {
   // Foreseen pose.
   torch::Tensor m_foreseenMean, m_foreseenWeight, m_foreseenBias;
   // Gate: clusters of a foot's movement.
-  torch::Tensor m_footCentres, m_footHold, m_footScale;
+  torch::Tensor m_footCentres, m_footHold, m_footSkew, m_footRadii, m_kneeSlope, m_boneSlope, m_slack;
+  torch::Tensor m_footFloor, m_reach;  ///< [feet], cm: lowest height, longest way to the hip
   // Regimes.
   torch::Tensor m_regimeCentres, m_richMean, m_richWeight, m_factor, m_factorInverse,
       m_factorLogDet;

@@ -10,6 +10,11 @@ namespace {
 constexpr int64_t kChunk = 32768;        ///< rows at a time: bounds the memory
 constexpr int64_t kClusterRows = 40000;  ///< rows that k-means looks at
 constexpr int kClusterRounds = 40;
+constexpr double kSlack = 0.02;   ///< cm that a leg may err over a resting foot
+constexpr double kLowest = 0.005;  ///< share of frames in which a foot is lower than its floor
+constexpr double kReached = 0.995;  ///< share of frames in which a leg reaches less far
+constexpr double kSmallestStep = 0.05;  ///< between radial quantiles, in units of the scale
+constexpr int64_t kFewestMoves = 60;   ///< of a cluster of its own gate
 constexpr double kPriorFrames = 200.0;  ///< weight of the common covariance in a regime's
 
 /// Lloyd's k-means from a fixed random choice of rows.
@@ -34,6 +39,63 @@ torch::Tensor clusterCentres(const torch::Tensor& features, int64_t count) {
   }
   if (centres.size(0) == count) return centres;
   return torch::cat({centres, centres.narrow(0, 0, 1).expand({count - centres.size(0), -1})}, 0);
+}
+
+/// What feet did, one row per foot and frame: chart coordinates [N, 3], where the rest of the body
+/// foresees them [N, 2], and scales [N]; cm.
+struct FootMoves {
+  torch::Tensor now, before, way, foreseen, scale;
+  FootMoves at(const torch::Tensor& rows) const {
+    const auto pick = [&](const torch::Tensor& t) { return t.index_select(0, rows); };
+    return {pick(now), pick(before), pick(way), pick(foreseen), pick(scale)};
+  }
+};
+
+/// One foot's frames after the other's, from [N, feet, ...].
+torch::Tensor footByFoot(const torch::Tensor& t) {
+  return t.transpose(0, 1).flatten(0, 1);
+}
+
+torch::Tensor offsets(const FootMoves& moves, double hold) {
+  return moves.now.narrow(-1, 0, 2) -
+         gateCentre(torch::full_like(moves.scale, hold), moves.foreseen, moves.before);
+}
+
+/// How far feet are held to their last place: the centre that makes the mean log distance
+/// smallest. It is robust and drawn to sharp peaks.
+double likeliestHold(const FootMoves& moves) {
+  double best = 1e30, out = 0.0;
+  for (const double hold : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0}) {
+    const double value =
+        (offsets(moves, hold).norm(2, -1) + 0.05).log().mean().item<double>();
+    if (value >= best) continue;
+    best = value;
+    out = hold;
+  }
+  return out;
+}
+
+struct FittedGate {
+  double skew = 0.0;
+  torch::Tensor radii;  ///< [kGateKnots], in units of the scale
+};
+
+/// The gate about given centres under which the movements are likeliest.
+FittedGate likeliestGate(const FootMoves& moves, double hold) {
+  FittedGate best;
+  double most = -1e30;
+  const auto offset = offsets(moves, hold);
+  for (const double skew : {-0.8, -0.5, -0.2, 0.0, 0.2, 0.5, 0.8}) {
+    const auto shift = gateShift(torch::full_like(moves.scale, skew), moves.way);
+    const auto radii = gateQuantiles(gateDistance(offset, shift) / moves.scale, kSmallestStep);
+    const auto gated =
+        throughGate({radii.unsqueeze(0) * moves.scale.unsqueeze(1), shift}, offset);
+    const double nats = (gated.logDet - 0.5 * gated.value.square().sum(-1)).mean().item<double>();
+    if (nats <= most) continue;
+    most = nats;
+    best = {skew, radii};
+  }
+  return best;
 }
 
 torch::Tensor assignment(const torch::Tensor& features, const torch::Tensor& centres) {
@@ -61,6 +123,19 @@ void KinematicBase::fitChart(const torch::Tensor& pose) {
   m_chartSides.copy_(sides / sides.norm(2, -1, true));
 }
 
+void KinematicBase::fitLimits(const torch::Tensor& pose) {
+  for (size_t f = 0; f < m_feet.size(); ++f) {
+    const auto foot = pose.select(1, m_feet[f]);
+    const auto quantile = [](const torch::Tensor& v, double q) {
+      const auto sorted = std::get<0>(v.sort());
+      return sorted[static_cast<int64_t>(q * static_cast<double>(sorted.size(0) - 1))];
+    };
+    m_footFloor[static_cast<int64_t>(f)] = quantile(foot.select(1, 1), kLowest);
+    m_reach[static_cast<int64_t>(f)] =
+        quantile((foot - pose.select(1, m_hips[f])).norm(2, -1), kReached);
+  }
+}
+
 void KinematicBase::fitForeseen(const torch::Tensor& pose, const Past& past) {
   const auto target = (pose - past.poses.select(1, 0)).flatten(1);
   const auto features = regressors(past);
@@ -82,34 +157,77 @@ void KinematicBase::fitForeseen(const torch::Tensor& pose, const Past& past) {
   m_foreseenBias.copy_(targetMean);
 }
 
-/// Per cluster of a foot's movement: how far it is held to its last place (the centre that makes
-/// the mean log distance smallest: robust, and drawn to sharp peaks), and the scale there.
-void KinematicBase::fitGate(const torch::Tensor& pose, const Past& past) {
-  std::vector<torch::Tensor> features, scales;
-  for (size_t f = 0; f < m_feet.size(); ++f) {
-    scales.push_back(baseScale(past, f));
-    features.push_back(footFeatures(past, f));
-  }
-  const auto places = footPlaces(chart(), pose, foreseenPose(past), past.poses.select(1, 0));
-  // One foot's frames after the other's, as in `features`.
-  const auto place = places.now.transpose(0, 1).flatten(0, 1),
-             last = places.before.transpose(0, 1).flatten(0, 1);
-  const auto all = torch::cat(features), scale = torch::cat(scales);
+/// Clusters of a foot's movement, and how far each is held.
+void KinematicBase::fitHold(const torch::Tensor& pose, const Past& past) {
+  std::vector<torch::Tensor> features;
+  for (size_t f = 0; f < m_feet.size(); ++f) features.push_back(footFeatures(past, f));
+  const auto all = torch::cat(features);
   m_footCentres.copy_(clusterCentres(all, m_config.footClusters));
   const auto cluster = assignment(all, m_footCentres);
+  m_footHold.zero_();
+  const auto places = footPlaces(chart(), pose, foreseenOn(past, footClusters(past)));
+  const auto now = footByFoot(places.now);
+  const FootMoves moves{now, footByFoot(places.before), footByFoot(places.way),
+                        torch::zeros_like(now.narrow(1, 0, 2)), footByFoot(footScales(past))};
   for (int64_t k = 0; k < m_config.footClusters; ++k) {
     const auto rows = cluster.eq(k).nonzero().squeeze(1);
-    if (rows.size(0) == 0) continue;
-    const auto p = place.index_select(0, rows), l = last.index_select(0, rows);
-    double best = 1e30;
-    for (const double hold : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0}) {
-      const auto distance = (p - hold * l).norm(2, -1);
-      const double value = (distance + 0.05).log().mean().item<double>();
-      if (value >= best) continue;
-      best = value;
-      m_footHold[k] = hold;
-      m_footScale[k] = (distance / scale.index_select(0, rows)).median().clamp(0.3, 4.0);
-    }
+    if (rows.size(0) > 0) m_footHold[k] = likeliestHold(moves.at(rows));
+  }
+}
+
+void KinematicBase::fitGate(const torch::Tensor& pose, const Past& past,
+                            const torch::Tensor& predicted) {
+  const auto clusters = footClusters(past);
+  const Foreseen foreseen = foreseenOn(past, clusters);
+  const FootGate gate = gateOf(past, clusters, foreseen, predicted);
+  const auto places = footPlaces(chart(), pose, foreseen);
+  const FootMoves moves{footByFoot(places.now), footByFoot(places.before), footByFoot(places.way),
+                        footByFoot(gate.foreseen), footByFoot(footScales(past))};
+  const auto cluster = footByFoot(clusters);
+  const FittedGate common = likeliestGate(moves, 0.5);
+  for (int64_t k = 0; k < m_config.footClusters; ++k) {
+    const auto rows = cluster.eq(k).nonzero().squeeze(1);
+    const FittedGate fitted =
+        rows.size(0) < kFewestMoves ? common
+                                    : likeliestGate(moves.at(rows), m_footHold[k].item<double>());
+    m_footSkew[k] = fitted.skew;
+    m_footRadii[k].copy_(fitted.radii);
+  }
+}
+
+/// How far knees leave the bend of their legs, and feet the lengths of their bones: with the
+/// distance that the foot goes.
+void KinematicBase::fitLegs(const torch::Tensor& pose, const Past& past,
+                             const torch::Tensor& predicted) {
+  const auto clusters = footClusters(past);
+  const Foreseen foreseen = foreseenOn(past, clusters);
+  const FootGate gate = gateOf(past, clusters, foreseen, predicted);
+  const auto places = footPlaces(chart(), pose, foreseen);
+  const auto distance =
+      gateDistance(places.now.narrow(-1, 0, 2) -
+                       gateCentre(gate.hold, gate.foreseen, places.before),
+                   gateShift(gate.skew, places.way));
+  std::vector<int64_t> knees;
+  for (const int64_t foot : m_feet) knees.push_back(m_parents[static_cast<size_t>(foot)]);
+  const auto bent = chartCoordinates(chart(), pose, foreseen)
+                        .index_select(1, torch::tensor(knees, torch::kInt64).to(pose.device()))
+                        .select(-1, 1);
+  const auto offset = (bent - (1.0 - firmness(gate.hold)) * gate.knee).abs();
+  const auto excess =
+      footExcess(places.now, places.before,
+                 m_lengths.index_select(0, torch::tensor(m_feet, torch::kInt64).to(pose.device())),
+                 gate.hold, distance);
+  for (int64_t k = 0; k < m_config.footClusters; ++k) {
+    const auto rows = clusters.eq(k);
+    if (!rows.any().item<bool>()) continue;
+    const auto s = distance.masked_select(rows);
+    const auto slack = kSlack + (1.0 - firmness(m_footHold[k])) * s.median();
+    const auto slope = [&](const torch::Tensor& values) {
+      return (values.masked_select(rows) / (s + slack)).square().mean().sqrt().clamp(0.02, 4.0);
+    };
+    m_slack[k] = slack;
+    m_kneeSlope[k] = slope(offset);
+    m_boneSlope[k] = slope(excess);
   }
 }
 
@@ -147,25 +265,33 @@ void KinematicBase::fitRegimes(const torch::Tensor& local, const Past& past) {
   for (int64_t k = 0; k < m_config.regimes; ++k)
     weight[k] =
         common + torch::linalg_solve(grams[k] + shrink, crosses[k] - grams[k].matmul(common));
-  // The feet's held coordinates are foreseen by the gate alone.
-  weight.index_fill_(2, m_order.narrow(0, 0, 2 * static_cast<int64_t>(m_feet.size())), 0.0);
   m_richWeight.copy_(weight);
 }
 
+/// The feet's gated values come first and are normal already: they stay as they are, and the rest
+/// of the body is whitened given them.
 void KinematicBase::fitWhitening(const torch::Tensor& residual, const torch::Tensor& regime) {
   const auto ordered = residual.index_select(1, m_order.to(residual.device())).to(torch::kFloat64);
   const auto centred = ordered - ordered.mean(0);
   const auto common = centred.t().matmul(centred) / static_cast<double>(ordered.size(0));
+  const int64_t gated = 2 * static_cast<int64_t>(m_feet.size()), rest = ordered.size(1) - gated;
   for (int64_t k = 0; k < m_config.regimes; ++k) {
     const auto rows = ordered.index_select(0, regime.eq(k).nonzero().squeeze(1));
     const auto covariance = (rows.t().matmul(rows) + kPriorFrames * common) /
                             (static_cast<double>(rows.size(0)) + kPriorFrames);
-    const auto [values, vectors] = torch::linalg_eigh(covariance);
+    const auto cross = covariance.narrow(0, gated, rest).narrow(1, 0, gated);
+    const auto slope = torch::linalg_solve(
+                           covariance.narrow(0, 0, gated).narrow(1, 0, gated), cross.t())
+                           .t();
+    const auto left = covariance.narrow(0, gated, rest).narrow(1, gated, rest) -
+                      slope.matmul(cross.t());
+    const auto [values, vectors] = torch::linalg_eigh(0.5 * (left + left.t()));
     const auto floored =
-        values.clamp_min(std::max(m_config.baseFloor * values.max().item<double>(), 1e-12));
-    // Cholesky, not PCA: the feet come first and depend on nothing else.
-    const auto factor =
-        torch::linalg_cholesky(vectors.matmul(torch::diag(floored)).matmul(vectors.t()));
+        values.clamp_min(std::max(m_config.baseFloor * values.max().item<double>(), 1e-8));
+    auto factor = torch::eye(gated + rest, covariance.options());
+    factor.narrow(0, gated, rest).narrow(1, 0, gated).copy_(slope);
+    factor.narrow(0, gated, rest).narrow(1, gated, rest).copy_(
+        torch::linalg_cholesky(vectors.matmul(torch::diag(floored)).matmul(vectors.t())));
     m_factor[k].copy_(factor);
     m_factorInverse[k].copy_(torch::linalg_inv(factor));
     m_factorLogDet[k] = -factor.diagonal().log().sum();
@@ -194,24 +320,19 @@ void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input) {
   const auto pose = toCentimetres(poses);
   const Past past = pastOf(input);
   fitChart(pose);
+  fitLimits(pose);
   fitForeseen(pose, past);
-  fitGate(pose, past);
-  const auto local =
-      toChart(chart(), pose, foreseenPose(past), past.poses.select(1, 0), gateOf(past))
-          .value.flatten(1);
-  fitRegimes(local, past);
+  fitHold(pose, past);
+  const Foreseen foreseen = foreseenOn(past, footClusters(past));
+  fitRegimes(chartCoordinates(chart(), pose, foreseen).flatten(1), past);
   const auto regime = assignment(regimeFeatures(past), m_regimeCentres);
-  auto residual = torch::empty_like(local);
-  const auto rich = richRegressors(past) - m_richMean;
-  for (int64_t k = 0; k < m_config.regimes; ++k) {
-    const auto rows = regime.eq(k).nonzero().squeeze(1);
-    if (rows.size(0) == 0) continue;
-    const auto foreseen =
-        rich.index_select(0, rows).matmul(m_richWeight[k].narrow(0, 0, rich.size(1))) +
-        m_richWeight[k][-1];
-    residual.index_copy_(0, rows, local.index_select(0, rows) - foreseen);
-  }
-  fitWhitening(residual, regime);
+  const auto predicted = predictedChart(richRegressors(past), regime);
+  fitGate(pose, past, predicted);
+  fitLegs(pose, past, predicted);
+  const auto local =
+      toChart(chart(), pose, foreseen, gateOf(past, footClusters(past), foreseen, predicted))
+          .value.flatten(1);
+  fitWhitening(local - predicted * m_predictable, regime);
   fitNetFeatures(past);
 }
 

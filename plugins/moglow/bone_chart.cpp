@@ -9,7 +9,7 @@ namespace {
 constexpr double kShortest = 0.1;      ///< cm; a shorter bone has no direction of its own
 constexpr double kStraight = 0.9999;   ///< of full reach: a straighter knee has no side
 /// Share of its bone's error that a foot held fast keeps from one frame to the next.
-constexpr double kBoneMemory = 0.9;
+constexpr double kBoneMemory = 0.98;
 constexpr double kResting = 0.2;  ///< cm: a foot that goes further from its gate's centre leaves
 
 /// Present positions [N, 3] of joints that are known already.
@@ -138,6 +138,12 @@ torch::Tensor scaleAt(const torch::Tensor& slope, const FootGate& gate, int64_t 
   return slope.select(1, foot) * (distance + gate.slack.select(1, foot));
 }
 
+/// asinh(x / scale) [N]: close to 0 as a division by the scale, while what is far out, as in the
+/// frame in which a foot leaves, is merely improbable.
+Charted squeezed(const torch::Tensor& x, const torch::Tensor& scale) {
+  return {(x / scale).asinh(), -0.5 * (x.square() + scale.square()).log()};
+}
+
 /// How much of a foot's third coordinate is that of its last place.
 torch::Tensor holdAlong(const torch::Tensor& hold, const torch::Tensor& distance) {
   return kBoneMemory * firmness(hold) / (1.0 + (distance / kResting).square());
@@ -157,7 +163,7 @@ torch::Tensor released(const BoneChart& chart, int64_t joint, const torch::Tenso
         value.select(1, chart.feet[static_cast<size_t>(limb.foot)]).narrow(-1, 0, 2);
     const auto scale =
         scaleAt(gate.kneeSlope, gate, limb.foot, gateDistanceAt(gate, limb.foot, gated));
-    const auto inPlane = own.select(-1, 1) * scale + kneeCentre(gate, limb.foot);
+    const auto inPlane = own.select(-1, 1).sinh() * scale + kneeCentre(gate, limb.foot);
     return torch::stack({own.select(-1, 0), inPlane, own.select(-1, 2)}, -1);
   }
   const int64_t foot = it - chart.feet.begin();
@@ -168,7 +174,7 @@ torch::Tensor released(const BoneChart& chart, int64_t joint, const torch::Tenso
                     gateCentre(hold, gate.foreseen.select(1, foot), before);
   const auto distance = gateDistanceAt(gate, foot, own.narrow(-1, 0, 2));
   const auto above = before.select(-1, 2) - rise(chart.lengths[joint], flat);
-  const auto along = own.select(-1, 2) * scaleAt(gate.boneSlope, gate, foot, distance) +
+  const auto along = own.select(-1, 2).sinh() * scaleAt(gate.boneSlope, gate, foot, distance) +
                      holdAlong(hold, distance) * above;
   return torch::cat({flat, along.unsqueeze(-1)}, -1);
 }
@@ -251,20 +257,18 @@ Charted toChart(const BoneChart& chart, const torch::Tensor& pose, const Foresee
     const auto gated = throughGate(footGate(gate, foot, places.way.select(1, foot)),
                                    flat - gateCentre(hold, gate.foreseen.select(1, foot), before));
     const auto distance = gateDistanceAt(gate, foot, gated.value);
-    const auto boneScale = scaleAt(gate.boneSlope, gate, foot, distance);
-    const auto along =
-        footExcess(now, before, chart.lengths[chart.feet[f]], hold, distance) / boneScale;
+    const auto excess = footExcess(now, before, chart.lengths[chart.feet[f]], hold, distance);
+    const auto along = squeezed(excess, scaleAt(gate.boneSlope, gate, foot, distance));
     joints[static_cast<size_t>(chart.feet[f])] =
-        torch::cat({gated.value, along.unsqueeze(-1)}, -1);
-    logDet = logDet + gated.logDet - boneScale.log();
+        torch::cat({gated.value, along.value.unsqueeze(-1)}, -1);
+    logDet = logDet + gated.logDet + along.logDet;
     const int64_t knee = kneeOf(chart, chart.feet[f]);
     if (knee < 0) continue;
     auto& bent = joints[static_cast<size_t>(knee)];
-    const auto scale = scaleAt(gate.kneeSlope, gate, foot, distance);
-    bent = torch::stack({bent.select(-1, 0),
-                         (bent.select(-1, 1) - kneeCentre(gate, foot)) / scale, bent.select(-1, 2)},
-                        -1);
-    logDet = logDet - scale.log();
+    const auto inPlane = squeezed(bent.select(-1, 1) - kneeCentre(gate, foot),
+                                  scaleAt(gate.kneeSlope, gate, foot, distance));
+    bent = torch::stack({bent.select(-1, 0), inPlane.value, bent.select(-1, 2)}, -1);
+    logDet = logDet + inPlane.logDet;
   }
   return {torch::stack(joints, 1), logDet};
 }

@@ -49,8 +49,8 @@ struct FootGate {
   torch::Tensor knee;      ///< [N, feet]: cm, the knee's q2 without hold
   torch::Tensor skew;      ///< [N, feet]: -1 .. 1, how much far movements go the foreseen way
   torch::Tensor radii;     ///< [N, feet, kGateKnots]: cm
-  /// The knee's q2 and the foot's u3 have the scale slope * (distance of the foot from its gate's
-  /// centre + slack).
+  /// The knee's q2 and the foot's u3 are squeezed, asinh(x / scale), with the scale
+  /// slope * (distance of the foot from its gate's centre + slack).
   torch::Tensor kneeSlope, boneSlope;  ///< [N, feet]
   torch::Tensor slack;                 ///< [N, feet]: cm
 };

@@ -56,12 +56,12 @@ torch::Tensor backThroughGate(const Gate& gate, const torch::Tensor& value) {
   return gateRadius(gate.radii, rho).unsqueeze(-1) * (value / rho.unsqueeze(-1) + gate.shift);
 }
 
-torch::Tensor gateQuantiles(const torch::Tensor& distances, double floor) {
+torch::Tensor gateQuantiles(const torch::Tensor& distances, double floor, double far) {
   const auto sorted = std::get<0>(distances.to(torch::kCPU).to(torch::kFloat64).sort());
   const auto count = static_cast<double>(sorted.size(0));
   auto out = torch::empty({kGateKnots}, torch::kFloat64);
   double last = 0.0;
-  for (int i = 0; i < kGateKnots; ++i) {
+  for (int i = 0; i + 1 < kGateKnots; ++i) {
     const double rho = kGateStep * (i + 1);
     const double at = (1.0 - std::exp(-0.5 * rho * rho)) * count - 0.5;
     const double low = std::clamp(std::floor(at), 0.0, count - 1.0);
@@ -73,6 +73,7 @@ torch::Tensor gateQuantiles(const torch::Tensor& distances, double floor) {
     last = std::max(value, last + floor);
     out[i] = last;
   }
+  out[kGateKnots - 1] = std::max(2.0 * last, far);
   return out.to(distances.options());
 }
 

@@ -15,7 +15,7 @@
 namespace marey::moglow {
 
 /// Radial quantiles are kept at rho = kGateStep, 2 kGateStep, ..., kGateKnots * kGateStep.
-constexpr int kGateKnots = 8;
+constexpr int kGateKnots = 9;
 constexpr double kGateStep = 0.5;
 
 /// The gates of N places.
@@ -39,7 +39,9 @@ torch::Tensor gateRadius(const torch::Tensor& radii, const torch::Tensor& rho);
 /// s above of offsets [N, 2] for shifts [N, 2]: their distance from the centre.
 torch::Tensor gateDistance(const torch::Tensor& offset, const torch::Tensor& shift);
 
-/// The kGateKnots quantiles of distances [N]; steps between them are at least `floor`.
-torch::Tensor gateQuantiles(const torch::Tensor& distances, double floor);
+/// The quantiles of distances [N] at all knots but the last, which lies at `far` or twice as far
+/// as the one before: what no frame of the data did is improbable, not impossible. Steps are at
+/// least `floor`.
+torch::Tensor gateQuantiles(const torch::Tensor& distances, double floor, double far = 0.0);
 
 }  // namespace marey::moglow

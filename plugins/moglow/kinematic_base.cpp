@@ -12,7 +12,7 @@ namespace {
 using torch::indexing::Slice;
 
 constexpr int64_t kFootFeatures = 19;
-constexpr double kStretch = 1.0;  ///< cm out of reach that a held foot stands
+constexpr double kStretch = 3.0;  ///< cm out of reach that a held foot stands
 
 /// Turns the floor coordinates of joints [N, K, J, 3] into a root frame that moved by (sideways,
 /// forward) and then turned, control [N, 3].
@@ -24,7 +24,7 @@ torch::Tensor intoNextFrame(const torch::Tensor& joints, const torch::Tensor& co
 }
 
 /// Keeps the direction of a movement and squeezes its size.
-torch::Tensor squeezed(const torch::Tensor& movement, double scale) {
+torch::Tensor squeezed(const torch::Tensor& movement, const torch::Tensor& scale) {
   const auto size = movement.norm(2, -1, true).clamp_min(1e-6);
   return movement * (torch::asinh(size / scale) / size);
 }
@@ -88,12 +88,7 @@ KinematicBase::KinematicBase(const Config& c, const BodyFacts& body) : m_config(
   order.insert(order.end(), rest.begin(), rest.end());
   m_order = torch::tensor(order, torch::kInt64);
   m_orderBack = m_order.argsort();
-  // The feet's first two coordinates leave their gates normal; their knees' second
-  // leaves it centred.
   m_predictable = register_buffer("predictable", torch::ones({c.poseDim}));
-  for (const int64_t foot : m_feet)
-    for (const int64_t i : {3 * foot, 3 * foot + 1, 3 * m_parents[static_cast<size_t>(foot)] + 1})
-      m_predictable[i] = 0.f;
 
   const int64_t d = c.poseDim, joints = d / 3, contacts = static_cast<int64_t>(m_contacts.size());
   const int64_t plain = d * c.baseOrder + 3 * c.baseOrder,
@@ -126,6 +121,7 @@ KinematicBase::KinematicBase(const Config& c, const BodyFacts& body) : m_config(
   m_slack = register_buffer("slack", torch::ones({c.footClusters}));
   const auto feet = static_cast<int64_t>(m_feet.size());
   m_footFloor = register_buffer("foot_floor", torch::full({feet}, -1e3));
+  m_slowMovement = register_buffer("slow_movement", torch::full({}, 0.3));
   m_reach = register_buffer("reach", torch::full({feet}, 1e3));
   m_regimeCentres =
       zeros("regime_centres",
@@ -206,20 +202,21 @@ torch::Tensor KinematicBase::footFeatures(const Past& past, size_t foot) const {
   const auto movement = [&](int64_t k, int64_t j) {
     return (p.select(1, k) - p.select(1, k + 1)).select(1, j);
   };
+  const auto& slow = m_slowMovement;
   const auto now = p.select(1, 0), control = past.control;
   const int64_t ankle = m_feet[foot], toe = m_toes[foot], other = m_feet[std::min(foot ^ 1U, m_feet.size() - 1)];
-  return torch::cat({squeezed(floor(movement(0, ankle)) * side, 0.3),
-                     squeezed(floor(movement(1, ankle)) * side, 0.3),
-                     squeezed(movement(0, ankle).narrow(1, 1, 1), 0.3) * 0.7,
+  return torch::cat({squeezed(floor(movement(0, ankle)) * side, slow),
+                     squeezed(floor(movement(1, ankle)) * side, slow),
+                     squeezed(movement(0, ankle).narrow(1, 1, 1), slow) * 0.7,
                      now.select(1, ankle).narrow(1, 1, 1) * 0.4,
-                     squeezed(floor(movement(0, toe)) * side, 0.3) * 0.7,
+                     squeezed(floor(movement(0, toe)) * side, slow) * 0.7,
                      now.select(1, toe).narrow(1, 1, 1) * 0.25,
                      floor(now.select(1, ankle) - now.select(1, 0)) * side * 0.08,
-                     squeezed(floor(movement(0, 0)) * side, 0.3) * 0.5,
+                     squeezed(floor(movement(0, 0)) * side, slow) * 0.5,
                      // The other foot says when this one may leave, the control whether it has to.
-                     squeezed(floor(movement(0, other)) * side, 0.3) * 0.5,
+                     squeezed(floor(movement(0, other)) * side, slow) * 0.5,
                      now.select(1, other).narrow(1, 1, 1) * 0.15,
-                     squeezed(control.narrow(1, 0, 2) * side, 0.3) * 0.5,
+                     squeezed(control.narrow(1, 0, 2) * side, slow) * 0.5,
                      torch::asinh(control.narrow(1, 2, 1) * m_sides[foot] / 0.02) * 0.3},
                     -1);
 }
@@ -288,7 +285,7 @@ torch::Tensor KinematicBase::predictedChart(const torch::Tensor& rich,
 torch::Tensor KinematicBase::regimeFeatures(const Past& past) const {
   const auto now = past.poses.select(1, 0), movement = now - past.poses.select(1, 1);
   std::vector<torch::Tensor> parts;
-  for (const int64_t j : m_contacts) parts.push_back(squeezed(movement.select(1, j), 0.5));
+  for (const int64_t j : m_contacts) parts.push_back(squeezed(movement.select(1, j), torch::full({}, 0.5, movement.options())));
   for (const int64_t j : m_contacts) parts.push_back(now.select(1, j).narrow(1, 1, 1) * 0.3);
   for (const int64_t j : m_feet)
     parts.push_back(now.select(1, j).index({Slice(), Slice(0, 3, 2)}) * 0.05);

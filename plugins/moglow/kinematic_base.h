@@ -58,7 +58,7 @@ class KinematicBase : public PoseBase {
   void fitForeseen(const torch::Tensor& pose, const Past& past);
   void fitHold(const torch::Tensor& pose, const Past& past);
   void fitGate(const torch::Tensor& pose, const Past& past, const torch::Tensor& predicted);
-  void fitLimits(const torch::Tensor& pose);
+  void fitLimits(const torch::Tensor& pose, const Past& past);
   void fitLegs(const torch::Tensor& pose, const Past& past, const torch::Tensor& predicted);
   void fitRegimes(const torch::Tensor& local, const Past& past);
   void fitWhitening(const torch::Tensor& residual, const torch::Tensor& regime);
@@ -79,6 +79,7 @@ class KinematicBase : public PoseBase {
   // Gate: clusters of a foot's movement.
   torch::Tensor m_footCentres, m_footHold, m_footSkew, m_footRadii, m_kneeSlope, m_boneSlope, m_slack;
   torch::Tensor m_footFloor, m_reach;  ///< [feet], cm: lowest height, longest way to the hip
+  torch::Tensor m_slowMovement;        ///< cm: what counts as slow for a foot in a frame
   // Regimes.
   torch::Tensor m_regimeCentres, m_richMean, m_richWeight, m_factor, m_factorInverse,
       m_factorLogDet;

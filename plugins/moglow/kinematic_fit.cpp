@@ -10,10 +10,12 @@ namespace {
 constexpr int64_t kChunk = 32768;        ///< rows at a time: bounds the memory
 constexpr int64_t kClusterRows = 40000;  ///< rows that k-means looks at
 constexpr int kClusterRounds = 40;
-constexpr double kSlack = 0.02;   ///< cm that a leg may err over a resting foot
+constexpr double kSlack = 0.01;   ///< cm that a leg may err over a resting foot
+constexpr double kSteadiest = 0.1;  ///< smallest scale of a leg's errors, relative to the foot's
 constexpr double kLowest = 0.005;  ///< share of frames in which a foot is lower than its floor
+constexpr double kSlowest = 0.1;   ///< share of frames in which a foot is slower than slow by half
 constexpr double kReached = 0.995;  ///< share of frames in which a leg reaches less far
-constexpr double kSmallestStep = 0.05;  ///< between radial quantiles, in units of the scale
+constexpr double kSmallestStep = 0.02;  ///< between radial quantiles, in units of the scale
 constexpr int64_t kFewestMoves = 60;   ///< of a cluster of its own gate
 constexpr double kPriorFrames = 200.0;  ///< weight of the common covariance in a regime's
 
@@ -80,14 +82,15 @@ struct FittedGate {
   torch::Tensor radii;  ///< [kGateKnots], in units of the scale
 };
 
-/// The gate about given centres under which the movements are likeliest.
-FittedGate likeliestGate(const FootMoves& moves, double hold) {
+/// The gate about given centres under which the movements are likeliest; `far` as in
+/// gateQuantiles.
+FittedGate likeliestGate(const FootMoves& moves, double hold, double far) {
   FittedGate best;
   double most = -1e30;
   const auto offset = offsets(moves, hold);
   for (const double skew : {-0.8, -0.5, -0.2, 0.0, 0.2, 0.5, 0.8}) {
     const auto shift = gateShift(torch::full_like(moves.scale, skew), moves.way);
-    const auto radii = gateQuantiles(gateDistance(offset, shift) / moves.scale, kSmallestStep);
+    const auto radii = gateQuantiles(gateDistance(offset, shift) / moves.scale, kSmallestStep, far);
     const auto gated =
         throughGate({radii.unsqueeze(0) * moves.scale.unsqueeze(1), shift}, offset);
     const double nats = (gated.logDet - 0.5 * gated.value.square().sum(-1)).mean().item<double>();
@@ -121,15 +124,26 @@ void KinematicBase::fitChart(const torch::Tensor& pose) {
   auto sides = fixed - (fixed * axes).sum(-1, true) * axes;
   m_axes.copy_(axes);
   m_chartSides.copy_(sides / sides.norm(2, -1, true));
+  // A foot's coordinates and its knee's second leave their gates centred.
+  m_predictable.fill_(1.0);
+  for (const int64_t foot : m_feet) {
+    const int64_t knee = kneeOf(chart(), foot);
+    m_predictable.narrow(0, 3 * foot, 3).zero_();
+    if (knee >= 0) m_predictable[3 * knee + 1] = 0.0;
+  }
 }
 
-void KinematicBase::fitLimits(const torch::Tensor& pose) {
+void KinematicBase::fitLimits(const torch::Tensor& pose, const Past& past) {
+  const auto quantile = [](const torch::Tensor& v, double q) {
+    const auto sorted = std::get<0>(v.flatten().sort());
+    return sorted[static_cast<int64_t>(q * static_cast<double>(sorted.size(0) - 1))];
+  };
+  const auto feet = torch::tensor(m_feet, torch::kInt64).to(pose.device());
+  const auto movement =
+      (past.poses.select(1, 0) - past.poses.select(1, 1)).index_select(1, feet).norm(2, -1);
+  m_slowMovement.copy_((2.0 * quantile(movement, kSlowest)).clamp(0.05, 0.3));
   for (size_t f = 0; f < m_feet.size(); ++f) {
     const auto foot = pose.select(1, m_feet[f]);
-    const auto quantile = [](const torch::Tensor& v, double q) {
-      const auto sorted = std::get<0>(v.sort());
-      return sorted[static_cast<int64_t>(q * static_cast<double>(sorted.size(0) - 1))];
-    };
     m_footFloor[static_cast<int64_t>(f)] = quantile(foot.select(1, 1), kLowest);
     m_reach[static_cast<int64_t>(f)] =
         quantile((foot - pose.select(1, m_hips[f])).norm(2, -1), kReached);
@@ -184,12 +198,14 @@ void KinematicBase::fitGate(const torch::Tensor& pose, const Past& past,
   const FootMoves moves{footByFoot(places.now), footByFoot(places.before), footByFoot(places.way),
                         footByFoot(gate.foreseen), footByFoot(footScales(past))};
   const auto cluster = footByFoot(clusters);
-  const FittedGate common = likeliestGate(moves, 0.5);
+  const FittedGate common = likeliestGate(moves, 0.5, 0.0);
+  // What feet do at large is what any foot may do once in a while.
+  const double far = common.radii[kGateKnots - 2].item<double>();
   for (int64_t k = 0; k < m_config.footClusters; ++k) {
     const auto rows = cluster.eq(k).nonzero().squeeze(1);
     const FittedGate fitted =
         rows.size(0) < kFewestMoves ? common
-                                    : likeliestGate(moves.at(rows), m_footHold[k].item<double>());
+                                    : likeliestGate(moves.at(rows), m_footHold[k].item<double>(), far);
     m_footSkew[k] = fitted.skew;
     m_footRadii[k].copy_(fitted.radii);
   }
@@ -223,7 +239,7 @@ void KinematicBase::fitLegs(const torch::Tensor& pose, const Past& past,
     const auto s = distance.masked_select(rows);
     const auto slack = kSlack + (1.0 - firmness(m_footHold[k])) * s.median();
     const auto slope = [&](const torch::Tensor& values) {
-      return (values.masked_select(rows) / (s + slack)).square().mean().sqrt().clamp(0.02, 4.0);
+      return (values.abs().masked_select(rows) / (s + slack)).median().clamp(kSteadiest, 4.0);
     };
     m_slack[k] = slack;
     m_kneeSlope[k] = slope(offset);
@@ -320,7 +336,7 @@ void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input) {
   const auto pose = toCentimetres(poses);
   const Past past = pastOf(input);
   fitChart(pose);
-  fitLimits(pose);
+  fitLimits(pose, past);
   fitForeseen(pose, past);
   fitHold(pose, past);
   const Foreseen foreseen = foreseenOn(past, footClusters(past));

@@ -41,8 +41,9 @@ void run(Options& o, const Context& context) {
                      {"test_nats_per_frame", finiteOrNull(result.testNatsPerFrame)},
                      {"best", result.best.string()},
                      {"last", result.last.string()}};
-  std::string text = fmt::format("{} steps; {:.1f} bits per frame in training", result.steps,
-                                 result.trainBitsPerFrame);
+  std::string text = fmt::format("{} steps", result.steps);
+  if (std::isfinite(result.trainBitsPerFrame))
+    text += fmt::format("; {:.1f} bits per frame in training", result.trainBitsPerFrame);
   if (std::isfinite(result.validBitsPerFrame))
     text += fmt::format(", {:.1f} at best in validation", result.validBitsPerFrame);
   if (std::isfinite(result.testNatsPerFrame))

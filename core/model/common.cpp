@@ -23,6 +23,18 @@ std::vector<float> loadVector(const TensorFile& file, const std::string& key, in
 
 }  // namespace
 
+void requireSameJoints(const ModelInfo& info, const Clip& clip, const std::string& path) {
+  if (3 * clip.jointCount() != info.poseDim)
+    throwInput({.path = path}, fmt::format("{} joints, as the model has", info.poseDim / 3), "{}",
+               clip.jointCount());
+  if (!info.skeleton || !clip.skeleton) return;
+  const auto &wanted = info.skeleton->names, &found = clip.skeleton->names;
+  for (size_t j = 0; j < wanted.size(); ++j)
+    if (wanted[j] != found[j])
+      throwInput({.path = path, .item = fmt::format("joint {}", j)},
+                 fmt::format("'{}', as the model has", wanted[j]), "'{}'", found[j]);
+}
+
 double Standardiser::logDetPerFrame() const {
   return std::accumulate(poseStd.begin(), poseStd.end(), 0.0, [](double sum, float s) {
     return sum - std::log(static_cast<double>(s));

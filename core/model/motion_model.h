@@ -112,6 +112,10 @@ std::unique_ptr<MotionModel> loadModel(const std::string& path,
 const ModelFamily& familyNamed(const std::string& name, std::span<const ModelFamily> families,
                                const std::string& origin);
 
+/// Throws InputError naming `path` unless the clip has the model's joints in the model's order. A
+/// model without a skeleton (an imported one) only says how many it has.
+void requireSameJoints(const ModelInfo& info, const Clip& clip, const std::string& path);
+
 /// Standardiser, features and skeleton inside stored models and data sets.
 void storeCommon(const ModelInfo& info, TensorFile& file);
 ModelInfo loadCommon(const TensorFile& file, const std::string& origin);

@@ -193,9 +193,7 @@ std::vector<Clip> sampleClips(const MotionModel& model, const SampleRequest& req
 SampleRequest requestAlongClip(const MotionModel& model, const Clip& clip, bool startFromClip) {
   const ModelInfo& info = model.info();
   const Place place{.path = clip.source.path.empty() ? clip.name : clip.source.path};
-  if (3 * clip.jointCount() != info.poseDim)
-    throwInput(place, fmt::format("{} joints, as the model has", info.poseDim / 3), "{}",
-               clip.jointCount());
+  requireSameJoints(info, clip, place.path);
   const FeatureSequence features = extractFeatures(clip, info.features);
   const int skipped = startFromClip ? info.context : 0;
   if (features.frameCount() < skipped + 2)

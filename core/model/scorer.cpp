@@ -57,9 +57,7 @@ ClipScore scoreSequence(const MotionModel& model, const FeatureSequence& feature
 ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardised) {
   const ModelInfo& info = model.info();
   const std::string& path = clip.source.path.empty() ? clip.name : clip.source.path;
-  if (3 * clip.jointCount() != info.poseDim)
-    throwInput({.path = path}, fmt::format("{} joints, as the model has", info.poseDim / 3), "{}",
-               clip.jointCount());
+  requireSameJoints(info, clip, path);
   FeatureSequence features = extractFeatures(clip, info.features);
   features.name = path;
   ClipScore out = scoreSequence(model, features, standardised);

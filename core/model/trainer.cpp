@@ -127,7 +127,8 @@ class Run {
            static_cast<double>(m_state.step - firstStep) / (m_state.seconds - before + 1e-9));
       if (m_state.step % m_config.checkpointEvery == 0) checkpoint();
     }
-    if (m_sinceCheckpoint > 0 || m_state.step == firstStep) checkpoint();
+    if (m_sinceCheckpoint > 0 || (m_state.step == firstStep && !m_request.resume)) checkpoint();
+    if (m_sinceCheckpoint == 0 && m_state.step == firstStep && m_request.resume) restate();
     progress.throwIfCancelled();
     return {m_state.step,
             m_lastTrainBits,
@@ -302,6 +303,14 @@ class Run {
     m_sinceCheckpoint = 0;
   }
 
+  /// A run that had ended says again what it reached.
+  void restate() {
+    const AveragedWeights averaged(*m_trainee.net, m_state);
+    m_lastTrainBits = std::nan("");
+    m_lastTestNats =
+        -evaluate(m_test) * std::numbers::ln2 + m_data.standardiser.logDetPerFrame();
+  }
+
   TensorFile exportModel(double valid, double test) const {
     ModelInfo info;
     info.family = m_family.name;
@@ -357,9 +366,12 @@ class Run {
     const double byTime = m_request.minutes ? m_state.seconds / (60.0 * *m_request.minutes) : 0.0;
     const double bits =
         m_lossCount > 0 ? m_lossSum / m_lossCount / std::numbers::ln2 : std::nan("");
+    const auto valid = std::isfinite(m_state.bestValid)
+                           ? fmt::format(" (valid {:.1f})", m_state.bestValid)
+                           : std::string();
     progress.report(std::min(1.0, std::max(bySteps, byTime)),
-                    fmt::format("step {}, {:.2f} steps/s, {:.1f} bits per frame (valid {:.1f})",
-                                m_state.step, rate, bits, m_state.bestValid));
+                    fmt::format("step {}, {:.2f} steps/s, {:.1f} bits per frame{}", m_state.step,
+                                rate, bits, valid));
   }
 
   const DataSet& m_data;

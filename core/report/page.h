@@ -20,6 +20,8 @@ std::string pageHtml(const ReportData& data, const std::vector<PageFigure>& figu
 
 /// An <img> element with the PNG inside.
 std::string imageMarkup(const std::string& png, const std::string& description);
+/// An SVG file that holds a picture as PNG, for programs that place only SVG.
+std::string sceneSvg(const std::string& png, int width, int height, const std::string& description);
 /// A drawn SVG file as an <svg> element of a page.
 std::string svgMarkup(const std::string& svg, const std::string& description);
 

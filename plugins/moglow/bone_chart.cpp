@@ -1,6 +1,7 @@
 #include "moglow/bone_chart.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace marey::moglow {
@@ -10,6 +11,8 @@ constexpr double kShortest = 0.1;      ///< cm; a shorter bone has no direction 
 constexpr double kStraight = 0.9999;   ///< of full reach: a straighter knee has no side
 /// Share of its bone's error that a foot held fast keeps from one frame to the next.
 constexpr double kBoneMemory = 0.98;
+constexpr double kTail = 4.0;      ///< scales beyond which legs' errors are squeezed
+constexpr double kFinest = 0.003;  ///< cm, smallest scale of those errors
 constexpr double kResting = 0.2;  ///< cm: a foot that goes further from its gate's centre leaves
 
 /// Present positions [N, 3] of joints that are known already.
@@ -135,13 +138,20 @@ torch::Tensor gateDistanceAt(const FootGate& gate, int64_t foot, const torch::Te
 
 torch::Tensor scaleAt(const torch::Tensor& slope, const FootGate& gate, int64_t foot,
                       const torch::Tensor& distance) {
-  return slope.select(1, foot) * (distance + gate.slack.select(1, foot));
+  return (slope.select(1, foot) * (distance + gate.slack.select(1, foot))).clamp_min(kFinest);
 }
 
-/// asinh(x / scale) [N]: close to 0 as a division by the scale, while what is far out, as in the
-/// frame in which a foot leaves, is merely improbable.
+/// x / scale [N] up to kTail, logarithmic from there: what is far out, as in the frame in which a
+/// foot leaves, is merely improbable.
 Charted squeezed(const torch::Tensor& x, const torch::Tensor& scale) {
-  return {(x / scale).asinh(), -0.5 * (x.square() + scale.square()).log()};
+  const auto r = x / scale, far = r.abs().clamp_min(kTail) / kTail;
+  return {torch::where(r.abs() < kTail, r, r.sign() * kTail * (1.0 + far.log())),
+          -far.log() - scale.log()};
+}
+
+torch::Tensor unsqueezed(const torch::Tensor& w, const torch::Tensor& scale) {
+  const auto far = kTail * (w.abs().clamp_min(kTail) / kTail - 1.0).exp();
+  return torch::where(w.abs() < kTail, w, w.sign() * far) * scale;
 }
 
 /// How much of a foot's third coordinate is that of its last place.
@@ -163,7 +173,7 @@ torch::Tensor released(const BoneChart& chart, int64_t joint, const torch::Tenso
         value.select(1, chart.feet[static_cast<size_t>(limb.foot)]).narrow(-1, 0, 2);
     const auto scale =
         scaleAt(gate.kneeSlope, gate, limb.foot, gateDistanceAt(gate, limb.foot, gated));
-    const auto inPlane = own.select(-1, 1).sinh() * scale + kneeCentre(gate, limb.foot);
+    const auto inPlane = unsqueezed(own.select(-1, 1), scale) + kneeCentre(gate, limb.foot);
     return torch::stack({own.select(-1, 0), inPlane, own.select(-1, 2)}, -1);
   }
   const int64_t foot = it - chart.feet.begin();
@@ -174,7 +184,7 @@ torch::Tensor released(const BoneChart& chart, int64_t joint, const torch::Tenso
                     gateCentre(hold, gate.foreseen.select(1, foot), before);
   const auto distance = gateDistanceAt(gate, foot, own.narrow(-1, 0, 2));
   const auto above = before.select(-1, 2) - rise(chart.lengths[joint], flat);
-  const auto along = own.select(-1, 2).sinh() * scaleAt(gate.boneSlope, gate, foot, distance) +
+  const auto along = unsqueezed(own.select(-1, 2), scaleAt(gate.boneSlope, gate, foot, distance)) +
                      holdAlong(hold, distance) * above;
   return torch::cat({flat, along.unsqueeze(-1)}, -1);
 }

@@ -49,7 +49,7 @@ struct FootGate {
   torch::Tensor knee;      ///< [N, feet]: cm, the knee's q2 without hold
   torch::Tensor skew;      ///< [N, feet]: -1 .. 1, how much far movements go the foreseen way
   torch::Tensor radii;     ///< [N, feet, kGateKnots]: cm
-  /// The knee's q2 and the foot's u3 are squeezed, asinh(x / scale), with the scale
+  /// The knee's q2 and the foot's u3 are divided by the scale, squeezed where large; the scale is
   /// slope * (distance of the foot from its gate's centre + slack).
   torch::Tensor kneeSlope, boneSlope;  ///< [N, feet]
   torch::Tensor slack;                 ///< [N, feet]: cm

@@ -319,7 +319,7 @@ Foresight KinematicBase::foresee(const BaseInput& input) const {
   const auto clusters = footClusters(past);
   const Foreseen foreseen = foreseenOn(past, clusters);
   const FootGate gate = gateOf(past, clusters, foreseen, predicted);
-  return {netFeatures(past, rich),
+  return {netFeatures(past, rich), (1.0 - firmness(foreseen.hold)).repeat_interleave(2, 1),
           {predicted * m_predictable, regime, foreseen.pose, foreseen.last, foreseen.places,
            gate.hold, gate.foreseen, gate.knee, gate.skew, gate.radii, gate.kneeSlope,
            gate.boneSlope, gate.slack}};

@@ -11,7 +11,8 @@ constexpr int64_t kChunk = 32768;        ///< rows at a time: bounds the memory
 constexpr int64_t kClusterRows = 40000;  ///< rows that k-means looks at
 constexpr int kClusterRounds = 40;
 constexpr double kSlack = 0.01;   ///< cm that a leg may err over a resting foot
-constexpr double kSteadiest = 0.1;  ///< smallest scale of a leg's errors, relative to the foot's
+constexpr double kSteadiest = 0.02;  ///< smallest scale of a leg's errors, relative to the foot's
+constexpr double kFarthest = 3.0;   ///< normal values of feet and knees that set their spread
 constexpr double kLowest = 0.005;  ///< share of frames in which a foot is lower than its floor
 constexpr double kSlowest = 0.1;   ///< share of frames in which a foot is slower than slow by half
 constexpr double kReached = 0.995;  ///< share of frames in which a leg reaches less far
@@ -101,6 +102,11 @@ FittedGate likeliestGate(const FootMoves& moves, double hold, double far) {
   return best;
 }
 
+torch::Tensor quantileOf(const torch::Tensor& values, double share) {
+  const auto sorted = std::get<0>(values.flatten().sort());
+  return sorted[static_cast<int64_t>(share * static_cast<double>(sorted.size(0) - 1))];
+}
+
 torch::Tensor assignment(const torch::Tensor& features, const torch::Tensor& centres) {
   return std::get<1>(torch::cdist(features, centres).min(1));
 }
@@ -134,19 +140,15 @@ void KinematicBase::fitChart(const torch::Tensor& pose) {
 }
 
 void KinematicBase::fitLimits(const torch::Tensor& pose, const Past& past) {
-  const auto quantile = [](const torch::Tensor& v, double q) {
-    const auto sorted = std::get<0>(v.flatten().sort());
-    return sorted[static_cast<int64_t>(q * static_cast<double>(sorted.size(0) - 1))];
-  };
   const auto feet = torch::tensor(m_feet, torch::kInt64).to(pose.device());
   const auto movement =
       (past.poses.select(1, 0) - past.poses.select(1, 1)).index_select(1, feet).norm(2, -1);
-  m_slowMovement.copy_((2.0 * quantile(movement, kSlowest)).clamp(0.05, 0.3));
+  m_slowMovement.copy_((2.0 * quantileOf(movement, kSlowest)).clamp(0.05, 0.3));
   for (size_t f = 0; f < m_feet.size(); ++f) {
     const auto foot = pose.select(1, m_feet[f]);
-    m_footFloor[static_cast<int64_t>(f)] = quantile(foot.select(1, 1), kLowest);
+    m_footFloor[static_cast<int64_t>(f)] = quantileOf(foot.select(1, 1), kLowest);
     m_reach[static_cast<int64_t>(f)] =
-        quantile((foot - pose.select(1, m_hips[f])).norm(2, -1), kReached);
+        quantileOf((foot - pose.select(1, m_hips[f])).norm(2, -1), kReached);
   }
 }
 
@@ -239,7 +241,8 @@ void KinematicBase::fitLegs(const torch::Tensor& pose, const Past& past,
     const auto s = distance.masked_select(rows);
     const auto slack = kSlack + (1.0 - firmness(m_footHold[k])) * s.median();
     const auto slope = [&](const torch::Tensor& values) {
-      return (values.abs().masked_select(rows) / (s + slack)).median().clamp(kSteadiest, 4.0);
+      const auto relative = values.masked_select(rows) / (s + slack);
+      return relative.square().mean().sqrt().clamp(kSteadiest, 4.0);
     };
     m_slack[k] = slack;
     m_kneeSlope[k] = slope(offset);
@@ -348,7 +351,10 @@ void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input) {
   const auto local =
       toChart(chart(), pose, foreseen, gateOf(past, footClusters(past), foreseen, predicted))
           .value.flatten(1);
-  fitWhitening(local - predicted * m_predictable, regime);
+  // The few frames in which feet leave would otherwise set the spread of all.
+  const auto residual = local - predicted * m_predictable;
+  fitWhitening(torch::where(m_predictable.eq(0.0), residual.clamp(-kFarthest, kFarthest), residual),
+               regime);
   fitNetFeatures(past);
 }
 

@@ -34,8 +34,9 @@ Foresight LinearBase::foresee(const BaseInput& input) const {
   auto history = input.history.view({-1, m_tau, m_poseDim});
   history = (history - m_historyMean).matmul(m_historyWhiten.t());
   if (input.keep.defined()) history = history * input.keep.unsqueeze(-1);
-  return {torch::cat({history.flatten(1), input.control}, -1),
-          {regressors(input).matmul(m_weight.t()) + m_bias}};
+  return {.features = torch::cat({history.flatten(1), input.control}, -1),
+          .freedom = {},
+          .parts = {regressors(input).matmul(m_weight.t()) + m_bias}};
 }
 
 PoseBase::Innovation LinearBase::toInnovation(const torch::Tensor& pose, const Foresight& f) const {

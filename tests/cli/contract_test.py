@@ -1,8 +1,10 @@
 """Every command: its help, its --json object, its exit status, on the walker's own clips."""
 import json
 import re
+import subprocess
+from xml.etree import ElementTree
 
-from support import Case, SharedModelCase, listing, main, marey
+from support import Case, SharedModelCase, listing, main, marey, need_tools
 
 COMMANDS = ["demo", "doctor", "convert", "prepare", "train", "sample", "score", "analyze",
             "report", "render", "model info", "model import", "model export", "model check"]
@@ -226,7 +228,7 @@ class ModelCommands(SharedModelCase):
                       "samples": 2, "held_out_samples": 1, "seed": 1, "fps": 20}
         document = self.dir / "experiment.json"
         document.write_text(json.dumps(experiment))
-        result = self.run_json("report", document, "--out", self.dir / "report", "--no-pdf")
+        result = self.run_json("report", document, "--out", self.dir / "report")
         page = self.dir / "report" / result["report"].rsplit("/", 1)[1]
         self.assertIn("Small", page.read_text())
         self.assertTrue(result["tables"])
@@ -235,6 +237,14 @@ class ModelCommands(SharedModelCase):
             path = name if name.startswith("/") else self.dir / "report" / name
             with open(path, "rb") as file:
                 self.assertTrue(file.read(1), name)
+        for scene in [f for f in result["figures"] if "scene" in f and f.endswith(".svg")]:
+            self.assertEqual(ElementTree.parse(self.dir / "report" / scene).getroot().tag,
+                             "{http://www.w3.org/2000/svg}svg")
+        need_tools("weasyprint", "pdftotext")
+        text = subprocess.run(["pdftotext", self.dir / "report" / "report.pdf", "-"],
+                              check=True, capture_output=True, text=True).stdout
+        self.assertIn("Small", text)
+        self.assertIn("Footsteps", text)
 
 
 class Demo(Case):

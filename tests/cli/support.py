@@ -53,6 +53,15 @@ def shared(*parts):
     return path
 
 
+def need_tools(*names):
+    """Other programs as judges; skips where one is missing, fails under CI."""
+    missing = [name for name in names if shutil.which(name) is None]
+    if missing and os.environ.get("CI"):
+        raise AssertionError(f"not installed: {', '.join(missing)}")
+    if missing:
+        raise unittest.SkipTest(f"not installed: {', '.join(missing)}")
+
+
 def read_tensors(path):
     """(metadata, {name: (dtype, shape, bytes)}) of the container of models and data sets."""
     blob = pathlib.Path(path).read_bytes()

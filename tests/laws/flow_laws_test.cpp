@@ -128,7 +128,7 @@ const DataSet& walkerData() {
 }
 
 /// A whole network, fitted to the walker; its conditioning is [history, control].
-Layer network(const std::string& poseBase) {
+Layer network(const std::string& poseBase, bool feetPassFlow = false) {
   constexpr int64_t kTau = 4;
   const DataSet& data = walkerData();
   Json config = {{"tau", kTau},    {"lookahead", 1},        {"steps", 2},          {"hidden", 8},
@@ -137,6 +137,7 @@ Layer network(const std::string& poseBase) {
     config["regimes"] = 3;
     config["foot_clusters"] = 10;
     config["net_features"] = 12;
+    config["feet_pass_flow"] = feetPassFlow;
   }
   const auto trainee = moglow::family().makeTrainee(
       config, "test", {data.poseDim(), data.controlDim(), data.skeleton, data.standardiser}, 1);
@@ -174,7 +175,8 @@ const std::map<std::string, std::function<Layer()>> kLayers{
     {"FlowFreeGru", [] { return flow(false, "gru"); }},
     {"NetWithoutBase", [] { return network("none"); }},
     {"NetLinearBase", [] { return network("linear"); }},
-    {"NetKinematicBase", [] { return network("kinematic"); }}};
+    {"NetKinematicBase", [] { return network("kinematic"); }},
+    {"NetFeetPassFlow", [] { return network("kinematic", true); }}};
 
 class LayerLaws : public testing::TestWithParam<std::string> {
  protected:

@@ -307,8 +307,7 @@ class Run {
   void restate() {
     const AveragedWeights averaged(*m_trainee.net, m_state);
     m_lastTrainBits = std::nan("");
-    m_lastTestNats =
-        -evaluate(m_test) * std::numbers::ln2 + m_data.standardiser.logDetPerFrame();
+    m_lastTestNats = -evaluate(m_test) * std::numbers::ln2 + m_data.standardiser.logDetPerFrame();
   }
 
   TensorFile exportModel(double valid, double test) const {

@@ -7,12 +7,12 @@
 namespace marey::moglow {
 namespace {
 
-constexpr double kShortest = 0.1;      ///< cm; a shorter bone has no direction of its own
-constexpr double kStraight = 0.9999;   ///< of full reach: a straighter knee has no side
+constexpr double kShortest = 0.1;     ///< cm; a shorter bone has no direction of its own
+constexpr double kStraight = 0.9999;  ///< of full reach: a straighter knee has no side
 /// Share of its bone's error that a foot held fast keeps from one frame to the next.
 constexpr double kBoneMemory = 0.98;
-constexpr double kTail = 4.0;      ///< scales beyond which legs' errors are squeezed
-constexpr double kFinest = 0.003;  ///< cm, smallest scale of those errors
+constexpr double kTail = 4.0;     ///< scales beyond which legs' errors are squeezed
+constexpr double kFinest = 0.02;  ///< cm, smallest scale of those errors
 constexpr double kResting = 0.2;  ///< cm: a foot that goes further from its gate's centre leaves
 
 /// Present positions [N, 3] of joints that are known already.
@@ -63,8 +63,8 @@ torch::Tensor kneeFrame(const BoneChart& chart, int64_t knee, int64_t foot,
   const auto thigh = chart.lengths[knee], shin = chart.lengths[foot];
   const auto far = (place - hip).norm(2, -1, true).clamp_min(1e-3);
   const auto axis = (place - hip) / far;
-  const auto d = torch::minimum(torch::maximum(far, (thigh - shin).abs() + 1e-2),
-                                kStraight * (thigh + shin));
+  const auto d =
+      torch::minimum(torch::maximum(far, (thigh - shin).abs() + 1e-2), kStraight * (thigh + shin));
   const auto along = (thigh.square() - shin.square() + d.square()) / (2.0 * d);
   const auto across = (thigh.square() - along.square()).clamp_min(0.0).sqrt();
   // The side of a straight leg is that of the chart.
@@ -169,8 +169,7 @@ torch::Tensor released(const BoneChart& chart, int64_t joint, const torch::Tenso
   if (it == chart.feet.end()) {
     const Limb limb = limbOf(chart, joint);
     if (limb.foot < 0) return own;
-    const auto gated =
-        value.select(1, chart.feet[static_cast<size_t>(limb.foot)]).narrow(-1, 0, 2);
+    const auto gated = value.select(1, chart.feet[static_cast<size_t>(limb.foot)]).narrow(-1, 0, 2);
     const auto scale =
         scaleAt(gate.kneeSlope, gate, limb.foot, gateDistanceAt(gate, limb.foot, gated));
     const auto inPlane = unsqueezed(own.select(-1, 1), scale) + kneeCentre(gate, limb.foot);
@@ -226,8 +225,7 @@ torch::Tensor footExcess(const torch::Tensor& now, const torch::Tensor& before,
                          const torch::Tensor& length, const torch::Tensor& hold,
                          const torch::Tensor& distance) {
   const auto height = rise(length, now.narrow(-1, 0, 2));
-  return now.select(-1, 2) - height -
-         holdAlong(hold, distance) * (before.select(-1, 2) - height);
+  return now.select(-1, 2) - height - holdAlong(hold, distance) * (before.select(-1, 2) - height);
 }
 
 FootPlaces footPlaces(const BoneChart& chart, const torch::Tensor& pose, const Foreseen& foreseen) {
@@ -250,9 +248,8 @@ torch::Tensor chartCoordinates(const BoneChart& chart, const torch::Tensor& pose
   const auto flat = q.narrow(-1, 0, 2);
   const auto excess =
       q.narrow(-1, 2, 1) - rise(chart.lengths.index_select(0, own), flat).unsqueeze(-1);
-  return torch::cat({(pose.narrow(1, 0, 1) - foreseen.pose.narrow(1, 0, 1)),
-                     torch::cat({flat, excess}, -1)},
-                    1);
+  return torch::cat(
+      {(pose.narrow(1, 0, 1) - foreseen.pose.narrow(1, 0, 1)), torch::cat({flat, excess}, -1)}, 1);
 }
 
 Charted toChart(const BoneChart& chart, const torch::Tensor& pose, const Foreseen& foreseen,

@@ -34,10 +34,10 @@ int64_t kneeOf(const BoneChart& chart, int64_t foot);
 
 /// Where a frame is foreseen, from history and control alone; centimetres, one frame of reference.
 struct Foreseen {
-  torch::Tensor pose;    ///< [N, J, 3]: where the body goes if no foot is held
-  torch::Tensor last;    ///< [N, feet, 3]: where the feet stood
-  torch::Tensor places;  ///< [N, feet, 3]: where the held feet stand now
-  torch::Tensor hold;    ///< [N, feet]: 0 (foreseen place) .. 1 (last place)
+  torch::Tensor pose;         ///< [N, J, 3]: where the body goes if no foot is held
+  torch::Tensor last;         ///< [N, feet, 3]: where the feet stood
+  torch::Tensor places;       ///< [N, feet, 3]: where the held feet stand now
+  torch::Tensor hold;         ///< [N, feet]: 0 (foreseen place) .. 1 (last place)
   torch::Tensor way() const;  ///< [N, feet, 3]: from `last` to the foot's place in `pose`
   std::vector<int64_t> feet;
 };

@@ -7,7 +7,8 @@
 // spread of distances is exact; and its circles are shifted as they grow, o = s (e + k), so that
 // large distances prefer the direction k. Both are invertible in closed form:
 //
-//   s = (-o.k + sqrt((o.k)^2 + (1 - k.k) o.o)) / (1 - k.k),   |dz/do| = rho rho'(s) / (s (1 + e.k)).
+//   s = (-o.k + sqrt((o.k)^2 + (1 - k.k) o.o)) / (1 - k.k),   |dz/do| = rho rho'(s) / (s (1 +
+//   e.k)).
 #pragma once
 
 #include "nn/torch.h"

@@ -204,7 +204,8 @@ torch::Tensor KinematicBase::footFeatures(const Past& past, size_t foot) const {
   };
   const auto& slow = m_slowMovement;
   const auto now = p.select(1, 0), control = past.control;
-  const int64_t ankle = m_feet[foot], toe = m_toes[foot], other = m_feet[std::min(foot ^ 1U, m_feet.size() - 1)];
+  const int64_t ankle = m_feet[foot], toe = m_toes[foot],
+                other = m_feet[std::min(foot ^ 1U, m_feet.size() - 1)];
   return torch::cat({squeezed(floor(movement(0, ankle)) * side, slow),
                      squeezed(floor(movement(1, ankle)) * side, slow),
                      squeezed(movement(0, ankle).narrow(1, 1, 1), slow) * 0.7,
@@ -285,7 +286,8 @@ torch::Tensor KinematicBase::predictedChart(const torch::Tensor& rich,
 torch::Tensor KinematicBase::regimeFeatures(const Past& past) const {
   const auto now = past.poses.select(1, 0), movement = now - past.poses.select(1, 1);
   std::vector<torch::Tensor> parts;
-  for (const int64_t j : m_contacts) parts.push_back(squeezed(movement.select(1, j), torch::full({}, 0.5, movement.options())));
+  for (const int64_t j : m_contacts)
+    parts.push_back(squeezed(movement.select(1, j), torch::full({}, 0.5, movement.options())));
   for (const int64_t j : m_contacts) parts.push_back(now.select(1, j).narrow(1, 1, 1) * 0.3);
   for (const int64_t j : m_feet)
     parts.push_back(now.select(1, j).index({Slice(), Slice(0, 3, 2)}) * 0.05);
@@ -319,7 +321,7 @@ Foresight KinematicBase::foresee(const BaseInput& input) const {
   const auto clusters = footClusters(past);
   const Foreseen foreseen = foreseenOn(past, clusters);
   const FootGate gate = gateOf(past, clusters, foreseen, predicted);
-  return {netFeatures(past, rich), (1.0 - firmness(foreseen.hold)).repeat_interleave(2, 1),
+  return {netFeatures(past, rich),
           {predicted * m_predictable, regime, foreseen.pose, foreseen.last, foreseen.places,
            gate.hold, gate.foreseen, gate.knee, gate.skew, gate.radii, gate.kneeSlope,
            gate.boneSlope, gate.slack}};
@@ -337,8 +339,7 @@ PoseBase::Innovation KinematicBase::toInnovation(const torch::Tensor& pose,
                                                  const Foresight& foresight) const {
   const auto& f = foresight.parts;
   const auto local = toChart(chart(), toCentimetres(pose), foreseenIn(f), gateIn(f));
-  const auto residual =
-      (local.value.flatten(1) - f[0]).index_select(1, m_order.to(pose.device()));
+  const auto residual = (local.value.flatten(1) - f[0]).index_select(1, m_order.to(pose.device()));
   // Density of standardised poses, not of centimetres.
   const auto units = m_poseStd.log().sum() + m_config.poseDim * std::log(100.0);
   return {byRegime(residual, m_factorInverse.transpose(1, 2), f[1]),

@@ -77,7 +77,8 @@ class KinematicBase : public PoseBase {
   // Foreseen pose.
   torch::Tensor m_foreseenMean, m_foreseenWeight, m_foreseenBias;
   // Gate: clusters of a foot's movement.
-  torch::Tensor m_footCentres, m_footHold, m_footSkew, m_footRadii, m_kneeSlope, m_boneSlope, m_slack;
+  torch::Tensor m_footCentres, m_footHold, m_footSkew, m_footRadii, m_kneeSlope, m_boneSlope,
+      m_slack;
   torch::Tensor m_footFloor, m_reach;  ///< [feet], cm: lowest height, longest way to the hip
   torch::Tensor m_slowMovement;        ///< cm: what counts as slow for a foot in a frame
   // Regimes.

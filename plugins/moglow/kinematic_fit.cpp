@@ -10,14 +10,14 @@ namespace {
 constexpr int64_t kChunk = 32768;        ///< rows at a time: bounds the memory
 constexpr int64_t kClusterRows = 40000;  ///< rows that k-means looks at
 constexpr int kClusterRounds = 40;
-constexpr double kSlack = 0.01;   ///< cm that a leg may err over a resting foot
-constexpr double kSteadiest = 0.02;  ///< smallest scale of a leg's errors, relative to the foot's
-constexpr double kFarthest = 3.0;   ///< normal values of feet and knees that set their spread
-constexpr double kLowest = 0.005;  ///< share of frames in which a foot is lower than its floor
-constexpr double kSlowest = 0.1;   ///< share of frames in which a foot is slower than slow by half
+constexpr double kSlack = 0.01;      ///< cm that a leg may err over a resting foot
+constexpr double kSteadiest = 0.05;  ///< smallest scale of a leg's errors, relative to the foot's
+constexpr double kFarthest = 3.0;    ///< normal values of feet and knees that set their spread
+constexpr double kLowest = 0.005;    ///< share of frames in which a foot is lower than its floor
+constexpr double kSlowest = 0.1;    ///< share of frames in which a foot is slower than slow by half
 constexpr double kReached = 0.995;  ///< share of frames in which a leg reaches less far
 constexpr double kSmallestStep = 0.02;  ///< between radial quantiles, in units of the scale
-constexpr int64_t kFewestMoves = 60;   ///< of a cluster of its own gate
+constexpr int64_t kFewestMoves = 60;    ///< of a cluster of its own gate
 constexpr double kPriorFrames = 200.0;  ///< weight of the common covariance in a regime's
 
 /// Lloyd's k-means from a fixed random choice of rows.
@@ -69,8 +69,7 @@ torch::Tensor offsets(const FootMoves& moves, double hold) {
 double likeliestHold(const FootMoves& moves) {
   double best = 1e30, out = 0.0;
   for (const double hold : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0}) {
-    const double value =
-        (offsets(moves, hold).norm(2, -1) + 0.05).log().mean().item<double>();
+    const double value = (offsets(moves, hold).norm(2, -1) + 0.05).log().mean().item<double>();
     if (value >= best) continue;
     best = value;
     out = hold;
@@ -92,8 +91,7 @@ FittedGate likeliestGate(const FootMoves& moves, double hold, double far) {
   for (const double skew : {-0.8, -0.5, -0.2, 0.0, 0.2, 0.5, 0.8}) {
     const auto shift = gateShift(torch::full_like(moves.scale, skew), moves.way);
     const auto radii = gateQuantiles(gateDistance(offset, shift) / moves.scale, kSmallestStep, far);
-    const auto gated =
-        throughGate({radii.unsqueeze(0) * moves.scale.unsqueeze(1), shift}, offset);
+    const auto gated = throughGate({radii.unsqueeze(0) * moves.scale.unsqueeze(1), shift}, offset);
     const double nats = (gated.logDet - 0.5 * gated.value.square().sum(-1)).mean().item<double>();
     if (nats <= most) continue;
     most = nats;
@@ -206,8 +204,9 @@ void KinematicBase::fitGate(const torch::Tensor& pose, const Past& past,
   for (int64_t k = 0; k < m_config.footClusters; ++k) {
     const auto rows = cluster.eq(k).nonzero().squeeze(1);
     const FittedGate fitted =
-        rows.size(0) < kFewestMoves ? common
-                                    : likeliestGate(moves.at(rows), m_footHold[k].item<double>(), far);
+        rows.size(0) < kFewestMoves
+            ? common
+            : likeliestGate(moves.at(rows), m_footHold[k].item<double>(), far);
     m_footSkew[k] = fitted.skew;
     m_footRadii[k].copy_(fitted.radii);
   }
@@ -216,15 +215,14 @@ void KinematicBase::fitGate(const torch::Tensor& pose, const Past& past,
 /// How far knees leave the bend of their legs, and feet the lengths of their bones: with the
 /// distance that the foot goes.
 void KinematicBase::fitLegs(const torch::Tensor& pose, const Past& past,
-                             const torch::Tensor& predicted) {
+                            const torch::Tensor& predicted) {
   const auto clusters = footClusters(past);
   const Foreseen foreseen = foreseenOn(past, clusters);
   const FootGate gate = gateOf(past, clusters, foreseen, predicted);
   const auto places = footPlaces(chart(), pose, foreseen);
-  const auto distance =
-      gateDistance(places.now.narrow(-1, 0, 2) -
-                       gateCentre(gate.hold, gate.foreseen, places.before),
-                   gateShift(gate.skew, places.way));
+  const auto distance = gateDistance(
+      places.now.narrow(-1, 0, 2) - gateCentre(gate.hold, gate.foreseen, places.before),
+      gateShift(gate.skew, places.way));
   std::vector<int64_t> knees;
   for (const int64_t foot : m_feet) knees.push_back(m_parents[static_cast<size_t>(foot)]);
   const auto bent = chartCoordinates(chart(), pose, foreseen)
@@ -299,18 +297,18 @@ void KinematicBase::fitWhitening(const torch::Tensor& residual, const torch::Ten
     const auto covariance = (rows.t().matmul(rows) + kPriorFrames * common) /
                             (static_cast<double>(rows.size(0)) + kPriorFrames);
     const auto cross = covariance.narrow(0, gated, rest).narrow(1, 0, gated);
-    const auto slope = torch::linalg_solve(
-                           covariance.narrow(0, 0, gated).narrow(1, 0, gated), cross.t())
-                           .t();
-    const auto left = covariance.narrow(0, gated, rest).narrow(1, gated, rest) -
-                      slope.matmul(cross.t());
+    const auto slope =
+        torch::linalg_solve(covariance.narrow(0, 0, gated).narrow(1, 0, gated), cross.t()).t();
+    const auto left =
+        covariance.narrow(0, gated, rest).narrow(1, gated, rest) - slope.matmul(cross.t());
     const auto [values, vectors] = torch::linalg_eigh(0.5 * (left + left.t()));
     const auto floored =
         values.clamp_min(std::max(m_config.baseFloor * values.max().item<double>(), 1e-8));
     auto factor = torch::eye(gated + rest, covariance.options());
     factor.narrow(0, gated, rest).narrow(1, 0, gated).copy_(slope);
-    factor.narrow(0, gated, rest).narrow(1, gated, rest).copy_(
-        torch::linalg_cholesky(vectors.matmul(torch::diag(floored)).matmul(vectors.t())));
+    factor.narrow(0, gated, rest)
+        .narrow(1, gated, rest)
+        .copy_(torch::linalg_cholesky(vectors.matmul(torch::diag(floored)).matmul(vectors.t())));
     m_factor[k].copy_(factor);
     m_factorInverse[k].copy_(torch::linalg_inv(factor));
     m_factorLogDet[k] = -factor.diagonal().log().sum();

@@ -35,7 +35,6 @@ Foresight LinearBase::foresee(const BaseInput& input) const {
   history = (history - m_historyMean).matmul(m_historyWhiten.t());
   if (input.keep.defined()) history = history * input.keep.unsqueeze(-1);
   return {.features = torch::cat({history.flatten(1), input.control}, -1),
-          .freedom = {},
           .parts = {regressors(input).matmul(m_weight.t()) + m_bias}};
 }
 

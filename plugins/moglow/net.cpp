@@ -48,10 +48,6 @@ Net::Net(const Config& config, const BodyFacts& body, uint64_t seed) : m_config(
   m_flow = register_module("flow", std::make_shared<nn::Flow>(flowSpec(config), generator));
   m_base = makePoseBase(config, body);
   if (m_base) register_module("base", m_base);
-  if (config.feetPassFlow)
-    m_feet = register_module(
-        "feet", std::make_shared<FeetLayer>(config.conditioning() - config.passedChannels(),
-                                            config.passedChannels(), config.hidden, generator));
 }
 
 Net::Context Net::contextOf(const torch::Tensor& poses, const torch::Tensor& controls) const {
@@ -73,13 +69,10 @@ nn::Transformed Net::toLatent(const torch::Tensor& x, const Context& context,
   const int64_t batch = x.size(0), frames = x.size(1);
   const Foresight foresight = m_base->foresee(flattened(context));
   const auto e = m_base->toInnovation(x.flatten(0, 1), foresight);
-  const auto [passed, rest] = split(e.value.view({batch, frames, -1}));
-  const Seen seen = seenIn(foresight, batch, frames);
-  auto out = m_flow->toLatent(rest, seenByFlow(seen, passed), state);
-  out.logDet = out.logDet + e.logDet.view({batch, frames});
-  if (!m_feet) return out;
-  const auto feet = m_feet->toLatent(passed, seen.features, seen.freedom);
-  return {torch::cat({feet.value, out.value}, -1), out.logDet + feet.logDet};
+  const auto innovation = e.value.view({batch, frames, -1});
+  const auto [passed, rest] = split(innovation);
+  auto out = m_flow->toLatent(rest, seenBy(foresight, passed), state);
+  return {torch::cat({passed, out.value}, -1), out.logDet + e.logDet.view({batch, frames})};
 }
 
 std::pair<torch::Tensor, torch::Tensor> Net::split(const torch::Tensor& innovation) const {
@@ -88,15 +81,9 @@ std::pair<torch::Tensor, torch::Tensor> Net::split(const torch::Tensor& innovati
           innovation.narrow(-1, passed, innovation.size(-1) - passed)};
 }
 
-Net::Seen Net::seenIn(const Foresight& foresight, int64_t batch, int64_t frames) {
-  const auto sequences = [&](const torch::Tensor& t) {
-    return t.defined() ? t.view({batch, frames, -1}) : t;
-  };
-  return {sequences(foresight.features), sequences(foresight.freedom)};
-}
-
-torch::Tensor Net::seenByFlow(const Seen& seen, const torch::Tensor& passed) const {
-  return m_feet ? torch::cat({seen.features, passed}, -1) : seen.features;
+torch::Tensor Net::seenBy(const Foresight& foresight, const torch::Tensor& passed) const {
+  const auto features = foresight.features.view({passed.size(0), passed.size(1), -1});
+  return m_config.feetPassFlow ? torch::cat({features, passed}, -1) : features;
 }
 
 torch::Tensor Net::toData(const torch::Tensor& z, const Context& context,
@@ -104,10 +91,8 @@ torch::Tensor Net::toData(const torch::Tensor& z, const Context& context,
   if (!m_base) return m_flow->toData(z, plainConditioning(context), state);
   const int64_t batch = z.size(0), frames = z.size(1);
   const Foresight foresight = m_base->foresee(flattened(context));
-  const Seen seen = seenIn(foresight, batch, frames);
-  auto [passed, rest] = split(z);
-  if (m_feet) passed = m_feet->toData(passed, seen.features, seen.freedom);
-  const auto e = torch::cat({passed, m_flow->toData(rest, seenByFlow(seen, passed), state)}, -1);
+  const auto [passed, rest] = split(z);
+  const auto e = torch::cat({passed, m_flow->toData(rest, seenBy(foresight, passed), state)}, -1);
   return m_base->toPose(e.flatten(0, 1), foresight).view({batch, frames, -1});
 }
 
@@ -179,8 +164,7 @@ Json Net::initialise(const TrainingFrames& frames) {
   }
   const Foresight foresight = m_base->foresee(flattened(context));
   const auto [passed, rest] = split(m_base->toInnovation(x, foresight).value.unsqueeze(1));
-  m_flow->initialise(rest, seenByFlow(seenIn(foresight, count, 1), passed),
-                     startOf(m_config.start));
+  m_flow->initialise(rest, seenBy(foresight, passed), startOf(m_config.start));
   return facts;
 }
 

@@ -7,7 +7,6 @@
 
 #include "model/trainable.h"
 #include "moglow/config.h"
-#include "moglow/feet_layer.h"
 #include "moglow/pose_base.h"
 #include "nn/flow.h"
 
@@ -43,19 +42,13 @@ class Net : public TrainableModel {
   torch::Tensor plainConditioning(const Context& context) const;
   /// Innovations [B, T, D] as the channels that pass the flow by and those that it models.
   std::pair<torch::Tensor, torch::Tensor> split(const torch::Tensor& innovation) const;
-  /// What a base foresees, as sequences: what the nets see [B, T, F] and the feet's freedom.
-  struct Seen {
-    torch::Tensor features, freedom;
-  };
-  static Seen seenIn(const Foresight& foresight, int64_t batch, int64_t frames);
   /// What the flow's nets see: [B, T, F], the passed channels included.
-  torch::Tensor seenByFlow(const Seen& seen, const torch::Tensor& passed) const;
+  torch::Tensor seenBy(const Foresight& foresight, const torch::Tensor& passed) const;
   Context contextAt(const TrainingFrames& frames, const torch::Tensor& rows) const;
 
   Config m_config;
   std::shared_ptr<nn::Flow> m_flow;
   std::shared_ptr<PoseBase> m_base;  ///< null without a base
-  std::shared_ptr<FeetLayer> m_feet;  ///< null where the flow models all
 };
 
 }  // namespace marey::moglow

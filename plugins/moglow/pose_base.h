@@ -20,7 +20,6 @@ struct BaseInput {
 /// What a base makes of one frame's conditioning; used by both directions.
 struct Foresight {
   torch::Tensor features;            ///< [N, F]: what the coupling nets see
-  torch::Tensor freedom;  ///< [N, 2 feet]: 0 (held) .. 1, of the feet's first innovations
   std::vector<torch::Tensor> parts;  ///< the base's own
 };
 

@@ -75,21 +75,15 @@ TEST(FootGate, ShiftMovesTheMeanByItsShareOfTheDistance) {
 
 /// A root and one leg: hip, knee, foot, toe, 40 cm bones, bent forwards.
 struct Leg {
-  BoneChart chart{.parents = {-1, 0, 1, 2, 3},
-                  .feet = {3},
-                  .lengths = torch::tensor({0., 10., 40., 40., 10.}, torch::kFloat64),
-                  .axes = torch::tensor({{0., 1., 0.},
-                                         {1., 0., 0.},
-                                         {0., -1., 0.},
-                                         {0., -1., 0.},
-                                         {0., 0., 1.}},
-                                        torch::kFloat64),
-                  .sides = torch::tensor({{1., 0., 0.},
-                                          {0., 1., 0.},
-                                          {1., 0., 0.},
-                                          {1., 0., 0.},
-                                          {1., 0., 0.}},
-                                         torch::kFloat64)};
+  BoneChart chart{
+      .parents = {-1, 0, 1, 2, 3},
+      .feet = {3},
+      .lengths = torch::tensor({0., 10., 40., 40., 10.}, torch::kFloat64),
+      .axes =
+          torch::tensor({{0., 1., 0.}, {1., 0., 0.}, {0., -1., 0.}, {0., -1., 0.}, {0., 0., 1.}},
+                        torch::kFloat64),
+      .sides = torch::tensor({{1., 0., 0.}, {0., 1., 0.}, {1., 0., 0.}, {1., 0., 0.}, {1., 0., 0.}},
+                             torch::kFloat64)};
   Tensor pose = torch::tensor({{{0., 85., 0.},
                                 {10., 85., 0.},
                                 {10., 85. - 38.2, 11.8666},
@@ -101,8 +95,11 @@ struct Leg {
 
   explicit Leg(double hold) {
     const auto last = pose.select(1, 3).unsqueeze(1);
-    foreseen = {.pose = pose + 0.5, .last = last, .places = last + (1.0 - hold) * 0.5,
-                .hold = torch::full({1, 1}, hold, torch::kFloat64), .feet = {3}};
+    foreseen = {.pose = pose + 0.5,
+                .last = last,
+                .places = last + (1.0 - hold) * 0.5,
+                .hold = torch::full({1, 1}, hold, torch::kFloat64),
+                .feet = {3}};
     const auto ones = torch::ones({1, 1}, torch::kFloat64);
     gate = {.hold = foreseen.hold,
             .foreseen = torch::zeros({1, 1, 2}, torch::kFloat64),
@@ -149,8 +146,7 @@ TEST(StandingLeg, LogDeterminantIsThatOfTheJacobian) {
     std::vector<Tensor> rows;
     for (int64_t i = 0; i < flat.size(0); ++i)
       rows.push_back(torch::autograd::grad({flat[i]}, {pose}, {}, true)[0].flatten());
-    const double expected =
-        std::get<1>(torch::slogdet(torch::stack(rows))).item<double>();
+    const double expected = std::get<1>(torch::slogdet(torch::stack(rows))).item<double>();
     EXPECT_NEAR(charted.logDet.item<double>(), expected, 1e-8) << hold;
   }
 }

@@ -30,10 +30,11 @@ torch::Tensor ActNorm::toData(const torch::Tensor& z) const {
   return z * (-logs).exp() - bias;
 }
 
-void ActNorm::initialise(const torch::Tensor& frames, double floor) {
+void ActNorm::initialise(const torch::Tensor& frames, double constant) {
   const torch::NoGradGuard guard;
   bias.copy_(-frames.mean(0));
-  logs.copy_(-frames.std(0, /*unbiased=*/false).clamp_min(floor).log());
+  const auto deviation = frames.std(0, /*unbiased=*/false);
+  logs.copy_(torch::where(deviation < constant, 0.0, -deviation.clamp_min(constant).log()));
 }
 
 // ---- InvertibleLinear

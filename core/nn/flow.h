@@ -33,8 +33,8 @@ class ActNorm : public torch::nn::Module {
   Transformed toLatent(const torch::Tensor& x) const;
   torch::Tensor toData(const torch::Tensor& z) const;
   /// Zero mean and unit variance of the frames [N, D] given. A channel whose standard deviation
-  /// is below `floor` is treated as if it had that one (constant channels stay finite).
-  void initialise(const torch::Tensor& frames, double floor = 1e-4);
+  /// is below `constant` is only centred: blown up, it would rule every gradient.
+  void initialise(const torch::Tensor& frames, double constant = 1e-3);
 
   torch::Tensor bias, logs;  ///< [D]
 };

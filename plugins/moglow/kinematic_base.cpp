@@ -48,6 +48,19 @@ torch::Tensor byRegime(const torch::Tensor& value, const torch::Tensor& matrices
   return out;
 }
 
+/// The pose's coordinates with the first two of every foot in front.
+torch::Tensor feetFirst(const std::vector<int64_t>& feet, int64_t poseDim) {
+  std::vector<int64_t> order, rest(static_cast<size_t>(poseDim));
+  std::iota(rest.begin(), rest.end(), 0);
+  for (const int64_t foot : feet)
+    for (int64_t i = 3 * foot; i < 3 * foot + 2; ++i) {
+      order.push_back(i);
+      std::erase(rest, i);
+    }
+  order.insert(order.end(), rest.begin(), rest.end());
+  return torch::tensor(order, torch::kInt64);
+}
+
 /// Two bones above a foot, or as far up as the skeleton goes.
 int64_t hipOf(const std::vector<int64_t>& parents, int64_t foot) {
   for (int bones = 0; bones < 2 && parents[static_cast<size_t>(foot)] >= 0; ++bones)
@@ -78,15 +91,7 @@ KinematicBase::KinematicBase(const Config& c, const BodyFacts& body) : m_config(
     m_hips.push_back(hipOf(m_parents, m_feet[f]));
     m_sides.push_back(f % 2 == 0 ? 1.f : -1.f);
   }
-  std::vector<int64_t> order, rest(static_cast<size_t>(c.poseDim));
-  std::iota(rest.begin(), rest.end(), 0);
-  for (const int64_t foot : m_feet)
-    for (int64_t i = 0; i < 2; ++i) {
-      order.push_back(3 * foot + i);
-      std::erase(rest, 3 * foot + i);
-    }
-  order.insert(order.end(), rest.begin(), rest.end());
-  m_order = torch::tensor(order, torch::kInt64);
+  m_order = feetFirst(m_feet, c.poseDim);
   m_orderBack = m_order.argsort();
   m_predictable = register_buffer("predictable", torch::ones({c.poseDim}));
 

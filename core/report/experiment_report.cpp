@@ -120,10 +120,9 @@ void addGait(const ExperimentResult& r, ReportData& out) {
   if (!std::isfinite(v95)) return;
   // Feet that plant exactly have a v95 at which no sample would ever touch the floor.
   const double tolerance = std::max(kGaitToleranceCmS, v95);
-  GaitPanel panel{
-      .title = fmt::format("Feet on the floor: {} (slower than {:.0f} cm/s)",
-                           r.natural[shown].name, tolerance),
-      .seconds = std::min(10.0, r.natural[shown].seconds())};
+  GaitPanel panel{.title = fmt::format("Feet on the floor: {} (slower than {:.0f} cm/s)",
+                                       r.natural[shown].name, tolerance),
+                  .seconds = std::min(10.0, r.natural[shown].seconds())};
   addGaitRows(0, r.natural[shown], r, tolerance, panel);
   for (size_t i = 0; i < r.systems.size(); ++i) {
     const size_t index = shown * static_cast<size_t>(r.experiment.heldOutSamples);

@@ -150,13 +150,14 @@ std::string imageMarkup(const std::string& png, const std::string& description) 
                      render::base64(png));
 }
 
-std::string sceneSvg(const std::string& png, int width, int height,
-                     const std::string& description) {
+std::string sceneSvg(const std::string& png, int width, int height, const std::string& description,
+                     const render::Recipe& recipe) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-      "viewBox=\"0 0 {0} {1}\">\n<title>{2}</title>\n<image width=\"{0}\" height=\"{1}\" "
-      "href=\"data:image/png;base64,{3}\"/>\n</svg>\n",
-      width, height, escapeXml(description), render::base64(png));
+      "viewBox=\"0 0 {0} {1}\">\n<title>{2}</title>\n<metadata>{3}</metadata>\n"
+      "<image width=\"{0}\" height=\"{1}\" href=\"data:image/png;base64,{4}\"/>\n</svg>\n",
+      width, height, escapeXml(description), escapeXml(render::recipeText(recipe)),
+      render::base64(png));
 }
 
 std::string svgMarkup(const std::string& svg, const std::string& description) {

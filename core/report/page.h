@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/recipe.h"
 #include "report/figures.h"
 #include "report/report_data.h"
 
@@ -21,7 +22,8 @@ std::string pageHtml(const ReportData& data, const std::vector<PageFigure>& figu
 /// An <img> element with the PNG inside.
 std::string imageMarkup(const std::string& png, const std::string& description);
 /// An SVG file that holds a picture as PNG, for programs that place only SVG.
-std::string sceneSvg(const std::string& png, int width, int height, const std::string& description);
+std::string sceneSvg(const std::string& png, int width, int height, const std::string& description,
+                     const render::Recipe& recipe);
 /// A drawn SVG file as an <svg> element of a page.
 std::string svgMarkup(const std::string& svg, const std::string& description);
 

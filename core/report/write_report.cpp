@@ -45,8 +45,8 @@ PageFigure writeFigure(const Figure& figure, const ReportData& data, const Repor
     const render::Image image =
         render::renderScene(*figure.scene, options.sceneWidth, options.sceneHeight);
     const std::string png = render::encodePng(image, recipe);
-    files.figures.push_back(output.write(name.string() + ".svg",
-                                         sceneSvg(png, image.width, image.height, description)));
+    files.figures.push_back(output.write(
+        name.string() + ".svg", sceneSvg(png, image.width, image.height, description, recipe)));
     files.figures.push_back(output.write(name.string() + ".png", png));
     return {&figure, imageMarkup(png, description)};
   }

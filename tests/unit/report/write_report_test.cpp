@@ -57,8 +57,8 @@ TEST_F(Report, WritesThePageEveryFigureAndEveryTable) {
   EXPECT_TRUE(fs::exists(files.html));
   for (const fs::path& file : files.figures) EXPECT_GT(fs::file_size(file), 500U) << file;
   for (const fs::path& file : files.tables) EXPECT_GT(fs::file_size(file), 20U) << file;
-  // Two scenes (PNG), one likelihood, footsteps, gait and two quantities (SVG and PNG).
-  EXPECT_EQ(files.figures.size(), 2U + 2U * 5U);
+  // Two scenes, one likelihood, footsteps, gait and two quantities, each as SVG and PNG.
+  EXPECT_EQ(files.figures.size(), 2U * 7U);
   EXPECT_EQ(files.tables.size(), 3U * data.tables.size());
   EXPECT_TRUE(files.pdf.empty());
 }

@@ -73,7 +73,6 @@ std::string suspectLayer(const torch::nn::Module& net) {
 /// Clips in place, by value and then by norm, as the authors do. Returns the norm before.
 double clipGradients(const torch::nn::Module& net, const TrainingConfig& c) {
   std::vector<torch::Tensor> gradients;
-  double squared = 0.0;
   for (const auto& p : net.parameters())
     if (p.grad().defined()) gradients.push_back(p.grad());
   std::vector<torch::Tensor> norms;
@@ -85,8 +84,7 @@ double clipGradients(const torch::nn::Module& net, const TrainingConfig& c) {
     if (c.clipValue > 0) g.clamp_(-c.clipValue, c.clipValue);
     norms.push_back(g.square().sum());
   }
-  squared = torch::stack(norms).sum().item<double>();
-  const double norm = std::sqrt(squared);
+  const double norm = std::sqrt(torch::stack(norms).sum().item<double>());
   if (c.clipNorm > 0 && norm > c.clipNorm)
     for (auto& g : gradients) g.mul_(c.clipNorm / norm);
   return raw;
@@ -127,8 +125,11 @@ class Run {
            static_cast<double>(m_state.step - firstStep) / (m_state.seconds - before + 1e-9));
       if (m_state.step % m_config.checkpointEvery == 0) checkpoint();
     }
-    if (m_sinceCheckpoint > 0 || (m_state.step == firstStep && !m_request.resume)) checkpoint();
-    if (m_sinceCheckpoint == 0 && m_state.step == firstStep && m_request.resume) restate();
+    const bool idle = m_state.step == firstStep;
+    if (idle && m_request.resume)
+      restate();
+    else if (idle || m_sinceCheckpoint > 0)
+      checkpoint();
     progress.throwIfCancelled();
     return {m_state.step,
             m_lastTrainBits,

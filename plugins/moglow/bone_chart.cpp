@@ -81,7 +81,7 @@ struct Limb {
 /// The limb that a joint is the foot or the knee of.
 Limb limbOf(const BoneChart& chart, int64_t joint) {
   for (size_t f = 0; f < chart.feet.size(); ++f) {
-    const int64_t knee = kneeOf(chart, chart.feet[f]);
+    const int64_t knee = chart.knees[f];
     if (knee >= 0 && (joint == knee || joint == chart.feet[f]))
       return {static_cast<int64_t>(f), knee};
   }
@@ -127,8 +127,8 @@ Gate footGate(const FootGate& gate, int64_t foot, const torch::Tensor& way) {
   return {gate.radii.select(1, foot), gateShift(gate.skew.select(1, foot), way)};
 }
 
-torch::Tensor kneeCentre(const FootGate& gate, int64_t foot) {
-  return (1.0 - firmness(gate.hold.select(1, foot))) * gate.knee.select(1, foot);
+torch::Tensor kneeCentre(const Foreseen& foreseen, const FootGate& gate, int64_t foot) {
+  return (1.0 - firmness(foreseen.hold.select(1, foot))) * gate.knee.select(1, foot);
 }
 
 /// Distance of a foot from its gate's centre, for its gated value [N, 2].
@@ -163,7 +163,7 @@ torch::Tensor holdAlong(const torch::Tensor& hold, const torch::Tensor& distance
 /// the third is beyond `rise`.
 torch::Tensor released(const BoneChart& chart, int64_t joint, const torch::Tensor& value,
                        const torch::Tensor& frame, const torch::Tensor& parent,
-                       const Foreseen& foreseen, const FootGate& gate) {
+                       const Foreseen& foreseen, const torch::Tensor& ways, const FootGate& gate) {
   const auto own = value.select(1, joint);
   const auto it = std::find(chart.feet.begin(), chart.feet.end(), joint);
   if (it == chart.feet.end()) {
@@ -172,13 +172,14 @@ torch::Tensor released(const BoneChart& chart, int64_t joint, const torch::Tenso
     const auto gated = value.select(1, chart.feet[static_cast<size_t>(limb.foot)]).narrow(-1, 0, 2);
     const auto scale =
         scaleAt(gate.kneeSlope, gate, limb.foot, gateDistanceAt(gate, limb.foot, gated));
-    const auto inPlane = unsqueezed(own.select(-1, 1), scale) + kneeCentre(gate, limb.foot);
+    const auto inPlane =
+        unsqueezed(own.select(-1, 1), scale) + kneeCentre(foreseen, gate, limb.foot);
     return torch::stack({own.select(-1, 0), inPlane, own.select(-1, 2)}, -1);
   }
   const int64_t foot = it - chart.feet.begin();
   const auto before = intoFrame(frame, foreseen.last.select(1, foot) - parent);
-  const auto way = intoFrame(frame, foreseen.way().select(1, foot));
-  const auto hold = gate.hold.select(1, foot);
+  const auto way = intoFrame(frame, ways.select(1, foot));
+  const auto hold = foreseen.hold.select(1, foot);
   const auto flat = backThroughGate(footGate(gate, foot, way), own.narrow(-1, 0, 2)) +
                     gateCentre(hold, gate.foreseen.select(1, foot), before);
   const auto distance = gateDistanceAt(gate, foot, own.narrow(-1, 0, 2));
@@ -190,19 +191,21 @@ torch::Tensor released(const BoneChart& chart, int64_t joint, const torch::Tenso
 
 }  // namespace
 
-int64_t kneeOf(const BoneChart& chart, int64_t foot) {
-  const int64_t knee = chart.parents[static_cast<size_t>(foot)];
-  if (knee < 0 || chart.parents[static_cast<size_t>(knee)] < 0) return -1;
-  const bool bends = chart.lengths[knee].item<double>() >= kShortest &&
-                     chart.lengths[foot].item<double>() >= kShortest;
-  // Of two feet on one knee the first bends it.
-  for (const int64_t other : chart.feet)
-    if (other < foot && chart.parents[static_cast<size_t>(other)] == knee) return -1;
-  return bends ? knee : -1;
+std::vector<int64_t> kneesOf(const std::vector<int64_t>& parents, const std::vector<int64_t>& feet,
+                             const torch::Tensor& lengths) {
+  const auto bends = [&](int64_t joint) { return lengths[joint].item<double>() >= kShortest; };
+  std::vector<int64_t> out;
+  for (const int64_t foot : feet) {
+    const int64_t knee = parents[static_cast<size_t>(foot)];
+    const bool leg = knee >= 0 && parents[static_cast<size_t>(knee)] >= 0 && bends(knee) &&
+                     bends(foot) && std::find(out.begin(), out.end(), knee) == out.end();
+    out.push_back(leg ? knee : -1);
+  }
+  return out;
 }
 
-torch::Tensor Foreseen::way() const {
-  return pose.index_select(1, indexOf(feet, pose)) - last;
+torch::Tensor wayOf(const BoneChart& chart, const Foreseen& foreseen) {
+  return foreseen.pose.index_select(1, indexOf(chart.feet, foreseen.pose)) - foreseen.last;
 }
 
 torch::Tensor firmness(const torch::Tensor& hold) {
@@ -234,7 +237,7 @@ FootPlaces footPlaces(const BoneChart& chart, const torch::Tensor& pose, const F
   const auto frames =
       framesAt(chart, chart.feet, foreseen, [&](int64_t j) { return pose.select(1, j); });
   return {intoFrame(frames, pose.index_select(1, feet) - parents),
-          intoFrame(frames, foreseen.last - parents), intoFrame(frames, foreseen.way())};
+          intoFrame(frames, foreseen.last - parents), intoFrame(frames, wayOf(chart, foreseen))};
 }
 
 torch::Tensor chartCoordinates(const BoneChart& chart, const torch::Tensor& pose,
@@ -260,7 +263,7 @@ Charted toChart(const BoneChart& chart, const torch::Tensor& pose, const Foresee
   for (size_t f = 0; f < chart.feet.size(); ++f) {
     const auto foot = static_cast<int64_t>(f);
     const auto now = places.now.select(1, foot), before = places.before.select(1, foot);
-    const auto hold = gate.hold.select(1, foot), flat = now.narrow(-1, 0, 2);
+    const auto hold = foreseen.hold.select(1, foot), flat = now.narrow(-1, 0, 2);
     const auto gated = throughGate(footGate(gate, foot, places.way.select(1, foot)),
                                    flat - gateCentre(hold, gate.foreseen.select(1, foot), before));
     const auto distance = gateDistanceAt(gate, foot, gated.value);
@@ -269,10 +272,10 @@ Charted toChart(const BoneChart& chart, const torch::Tensor& pose, const Foresee
     joints[static_cast<size_t>(chart.feet[f])] =
         torch::cat({gated.value, along.value.unsqueeze(-1)}, -1);
     logDet = logDet + gated.logDet + along.logDet;
-    const int64_t knee = kneeOf(chart, chart.feet[f]);
+    const int64_t knee = chart.knees[f];
     if (knee < 0) continue;
     auto& bent = joints[static_cast<size_t>(knee)];
-    const auto inPlane = squeezed(bent.select(-1, 1) - kneeCentre(gate, foot),
+    const auto inPlane = squeezed(bent.select(-1, 1) - kneeCentre(foreseen, gate, foot),
                                   scaleAt(gate.kneeSlope, gate, foot, distance));
     bent = torch::stack({bent.select(-1, 0), inPlane.value, bent.select(-1, 2)}, -1);
     logDet = logDet + inPlane.logDet;
@@ -285,13 +288,14 @@ torch::Tensor fromChart(const BoneChart& chart, const torch::Tensor& value,
   std::vector<torch::Tensor> joints(static_cast<size_t>(value.size(1)));
   joints[0] = value.select(1, 0) + foreseen.pose.select(1, 0);
   const auto present = [&](int64_t j) { return joints[static_cast<size_t>(j)]; };
+  const auto ways = wayOf(chart, foreseen);
   for (const auto& level : levelsOf(chart)) {
     const auto frames = framesAt(chart, level, foreseen, present);
     std::vector<torch::Tensor> parents, freed;
     for (size_t k = 0; k < level.size(); ++k) {
       parents.push_back(present(chart.parents[static_cast<size_t>(level[k])]));
       freed.push_back(released(chart, level[k], value, frames.select(1, static_cast<int64_t>(k)),
-                               parents.back(), foreseen, gate));
+                               parents.back(), foreseen, ways, gate));
     }
     const auto local = torch::stack(freed, 1), flat = local.narrow(-1, 0, 2);
     const auto lengths = chart.lengths.index_select(0, indexOf(level, value));

@@ -23,28 +23,30 @@ namespace marey::moglow {
 struct BoneChart {
   std::vector<int64_t> parents;  ///< -1 for joint 0 alone, parents first
   std::vector<int64_t> feet;     ///< contact joints
+  std::vector<int64_t> knees;    ///< of each foot, as kneesOf says
   torch::Tensor lengths;         ///< [J]: reference bone lengths
   torch::Tensor axes;            ///< [J, 3]: mean bone directions, unit
   torch::Tensor sides;           ///< [J, 3]: unit vectors at right angles to `axes`
 };
 
-/// The joint between a foot and its hip, or -1 where the skeleton has none: bones shorter than a
-/// millimetre bend no leg.
-int64_t kneeOf(const BoneChart& chart, int64_t foot);
+/// The joint between each foot and its hip, or -1 where the skeleton has none: bones shorter than a
+/// millimetre bend no leg, and of two feet on one knee the first bends it.
+std::vector<int64_t> kneesOf(const std::vector<int64_t>& parents, const std::vector<int64_t>& feet,
+                             const torch::Tensor& lengths);
 
 /// Where a frame is foreseen, from history and control alone; centimetres, one frame of reference.
 struct Foreseen {
-  torch::Tensor pose;         ///< [N, J, 3]: where the body goes if no foot is held
-  torch::Tensor last;         ///< [N, feet, 3]: where the feet stood
-  torch::Tensor places;       ///< [N, feet, 3]: where the held feet stand now
-  torch::Tensor hold;         ///< [N, feet]: 0 (foreseen place) .. 1 (last place)
-  torch::Tensor way() const;  ///< [N, feet, 3]: from `last` to the foot's place in `pose`
-  std::vector<int64_t> feet;
+  torch::Tensor pose;    ///< [N, J, 3]: where the body goes if no foot is held
+  torch::Tensor last;    ///< [N, feet, 3]: where the feet stood
+  torch::Tensor places;  ///< [N, feet, 3]: where the held feet stand now
+  torch::Tensor hold;    ///< [N, feet]: 0 (foreseen place) .. 1 (last place)
 };
+
+/// From where feet stood to where they are foreseen without hold, [N, feet, 3].
+torch::Tensor wayOf(const BoneChart& chart, const Foreseen& foreseen);
 
 /// What is foreseen of each foot in a frame, beside its place.
 struct FootGate {
-  torch::Tensor hold;      ///< [N, feet]: as in Foreseen
   torch::Tensor foreseen;  ///< [N, feet, 2]: cm, the foot's (q1, q2) without hold
   torch::Tensor knee;      ///< [N, feet]: cm, the knee's q2 without hold
   torch::Tensor skew;      ///< [N, feet]: -1 .. 1, how much far movements go the foreseen way

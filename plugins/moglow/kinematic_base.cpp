@@ -143,7 +143,8 @@ KinematicBase::KinematicBase(const Config& c, const BodyFacts& body) : m_config(
 }
 
 BoneChart KinematicBase::chart() const {
-  return {m_parents, m_feet, m_lengths, m_axes, m_chartSides};
+  return {m_parents, m_feet, kneesOf(m_parents, m_feet, m_lengths),
+          m_lengths, m_axes, m_chartSides};
 }
 
 torch::Tensor KinematicBase::toCentimetres(const torch::Tensor& pose) const {
@@ -229,9 +230,8 @@ torch::Tensor KinematicBase::footFeatures(const Past& past, size_t foot) const {
 
 /// Lengths that a foot's radial quantiles are relative to, [N, feet] cm: small for a slow foot.
 torch::Tensor KinematicBase::footScales(const Past& past) const {
-  const auto track =
-      past.poses.index_select(2, torch::tensor(m_feet, torch::kInt64).to(past.poses.device()))
-          .index({Slice(), Slice(), Slice(), Slice(0, 3, 2)});
+  const auto track = past.poses.index_select(2, jointIndex(m_feet, past.poses))
+                         .index({Slice(), Slice(), Slice(), Slice(0, 3, 2)});
   const auto one = (track.select(1, 0) - track.select(1, 1)).norm(2, -1);
   const auto two = (track.select(1, 0) - track.select(1, 2)).norm(2, -1) / 2.0;
   const auto speed = torch::minimum(one, two);
@@ -249,13 +249,14 @@ Foreseen KinematicBase::foreseenOn(const Past& past, const torch::Tensor& cluste
   Foreseen out{.pose = foreseenPose(past),
                .last = past.poses.select(1, 0).index_select(1, jointIndex(m_feet, past.poses)),
                .places = {},
-               .hold = {},
-               .feet = m_feet};
+               .hold = {}};
+  const auto feet = jointIndex(m_feet, out.pose);
   const auto hips = out.pose.index_select(1, jointIndex(m_hips, out.pose));
   const auto excess = ((out.last - hips).norm(2, -1) - m_reach).clamp_min(0.0);
   // A foot out of reach has to come along.
   out.hold = m_footHold.index({clusters}) * (-(excess / kStretch).square()).exp();
-  const auto places = out.last + (1.0 - out.hold).unsqueeze(-1) * out.way();
+  const auto places =
+      out.last + (1.0 - out.hold).unsqueeze(-1) * (out.pose.index_select(1, feet) - out.last);
   const auto height = torch::maximum(places.select(-1, 1), m_footFloor);
   out.places = torch::stack({places.select(-1, 0), height, places.select(-1, 2)}, -1);
   // A body that is about to go out of reach of the feet that it stands on stays with them.
@@ -267,13 +268,12 @@ Foreseen KinematicBase::foreseenOn(const Past& past, const torch::Tensor& cluste
 }
 
 FootGate KinematicBase::gateOf(const Past& past, const torch::Tensor& clusters,
-                               const Foreseen& foreseen, const torch::Tensor& predicted) const {
+                               const torch::Tensor& predicted) const {
   const auto joints = predicted.view({predicted.size(0), -1, 3});
   const auto places = joints.index_select(1, jointIndex(m_feet, predicted));
   std::vector<int64_t> knees;
   for (const int64_t foot : m_feet) knees.push_back(m_parents[static_cast<size_t>(foot)]);
-  return {.hold = foreseen.hold,
-          .foreseen = places.narrow(-1, 0, 2),
+  return {.foreseen = places.narrow(-1, 0, 2),
           .knee = joints.index_select(1, jointIndex(knees, predicted)).select(-1, 1),
           .skew = m_footSkew.index({clusters}),
           .radii = m_footRadii.index({clusters}) * footScales(past).unsqueeze(-1),
@@ -302,6 +302,10 @@ torch::Tensor KinematicBase::regimeFeatures(const Past& past) const {
   return torch::cat(parts, -1);
 }
 
+torch::Tensor KinematicBase::regimeOf(const Past& past) const {
+  return nearest(regimeFeatures(past), m_regimeCentres);
+}
+
 torch::Tensor KinematicBase::netFeatures(const Past& past, const torch::Tensor& rich) const {
   const auto centred = rich - m_netMean;
   const int64_t speeds = m_speedScale.size(0), controls = m_controlScale.size(0),
@@ -321,23 +325,23 @@ Foresight KinematicBase::foresee(const BaseInput& input) const {
   const torch::NoGradGuard guard;  // nothing here is trained
   const Past past = pastOf(input);
   const auto rich = richRegressors(past);
-  const auto regime = nearest(regimeFeatures(past), m_regimeCentres);
+  const auto regime = regimeOf(past);
   const auto predicted = predictedChart(rich, regime);
   const auto clusters = footClusters(past);
   const Foreseen foreseen = foreseenOn(past, clusters);
-  const FootGate gate = gateOf(past, clusters, foreseen, predicted);
+  const FootGate gate = gateOf(past, clusters, predicted);
   return {netFeatures(past, rich),
           {predicted * m_predictable, regime, foreseen.pose, foreseen.last, foreseen.places,
-           gate.hold, gate.foreseen, gate.knee, gate.skew, gate.radii, gate.kneeSlope,
+           foreseen.hold, gate.foreseen, gate.knee, gate.skew, gate.radii, gate.kneeSlope,
            gate.boneSlope, gate.slack}};
 }
 
 Foreseen KinematicBase::foreseenIn(const Parts& parts) const {
-  return {.pose = parts[2], .last = parts[3], .places = parts[4], .hold = parts[5], .feet = m_feet};
+  return {.pose = parts[2], .last = parts[3], .places = parts[4], .hold = parts[5]};
 }
 
 FootGate KinematicBase::gateIn(const Parts& parts) {
-  return {parts[5], parts[6], parts[7], parts[8], parts[9], parts[10], parts[11], parts[12]};
+  return {parts[6], parts[7], parts[8], parts[9], parts[10], parts[11], parts[12]};
 }
 
 PoseBase::Innovation KinematicBase::toInnovation(const torch::Tensor& pose,

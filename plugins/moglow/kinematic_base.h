@@ -41,11 +41,12 @@ class KinematicBase : public PoseBase {
   torch::Tensor footSpeeds(const Past& past) const;
   torch::Tensor footFeatures(const Past& past, size_t foot) const;
   torch::Tensor regimeFeatures(const Past& past) const;
+  torch::Tensor regimeOf(const Past& past) const;
   torch::Tensor netFeatures(const Past& past, const torch::Tensor& rich) const;
   torch::Tensor foreseenPose(const Past& past) const;
   torch::Tensor footClusters(const Past& past) const;
   Foreseen foreseenOn(const Past& past, const torch::Tensor& clusters) const;
-  FootGate gateOf(const Past& past, const torch::Tensor& clusters, const Foreseen& foreseen,
+  FootGate gateOf(const Past& past, const torch::Tensor& clusters,
                   const torch::Tensor& predicted) const;
   torch::Tensor predictedChart(const torch::Tensor& rich, const torch::Tensor& regime) const;
   torch::Tensor footScales(const Past& past) const;
@@ -57,9 +58,10 @@ class KinematicBase : public PoseBase {
   void fitChart(const torch::Tensor& pose);
   void fitForeseen(const torch::Tensor& pose, const Past& past);
   void fitHold(const torch::Tensor& pose, const Past& past);
-  void fitGate(const torch::Tensor& pose, const Past& past, const torch::Tensor& predicted);
+  struct Footing;
+  void fitGate(const Footing& footing);
   void fitLimits(const torch::Tensor& pose, const Past& past);
-  void fitLegs(const torch::Tensor& pose, const Past& past, const torch::Tensor& predicted);
+  void fitLegs(const torch::Tensor& pose, const Footing& footing);
   void fitRegimes(const torch::Tensor& local, const Past& past);
   void fitWhitening(const torch::Tensor& residual, const torch::Tensor& regime);
   void fitNetFeatures(const Past& past);

@@ -105,10 +105,6 @@ torch::Tensor quantileOf(const torch::Tensor& values, double share) {
   return sorted[static_cast<int64_t>(share * static_cast<double>(sorted.size(0) - 1))];
 }
 
-torch::Tensor assignment(const torch::Tensor& features, const torch::Tensor& centres) {
-  return std::get<1>(torch::cdist(features, centres).min(1));
-}
-
 }  // namespace
 
 void KinematicBase::fitChart(const torch::Tensor& pose) {
@@ -130,11 +126,9 @@ void KinematicBase::fitChart(const torch::Tensor& pose) {
   m_chartSides.copy_(sides / sides.norm(2, -1, true));
   // A foot's coordinates and its knee's second leave their gates centred.
   m_predictable.fill_(1.0);
-  for (const int64_t foot : m_feet) {
-    const int64_t knee = kneeOf(chart(), foot);
-    m_predictable.narrow(0, 3 * foot, 3).zero_();
+  for (const int64_t foot : m_feet) m_predictable.narrow(0, 3 * foot, 3).zero_();
+  for (const int64_t knee : chart().knees)
     if (knee >= 0) m_predictable[3 * knee + 1] = 0.0;
-  }
 }
 
 void KinematicBase::fitLimits(const torch::Tensor& pose, const Past& past) {
@@ -175,11 +169,10 @@ void KinematicBase::fitForeseen(const torch::Tensor& pose, const Past& past) {
 void KinematicBase::fitHold(const torch::Tensor& pose, const Past& past) {
   std::vector<torch::Tensor> features;
   for (size_t f = 0; f < m_feet.size(); ++f) features.push_back(footFeatures(past, f));
-  const auto all = torch::cat(features);
-  m_footCentres.copy_(clusterCentres(all, m_config.footClusters));
-  const auto cluster = assignment(all, m_footCentres);
+  m_footCentres.copy_(clusterCentres(torch::cat(features), m_config.footClusters));
   m_footHold.zero_();
-  const auto places = footPlaces(chart(), pose, foreseenOn(past, footClusters(past)));
+  const auto clusters = footClusters(past), cluster = footByFoot(clusters);
+  const auto places = footPlaces(chart(), pose, foreseenOn(past, clusters));
   const auto now = footByFoot(places.now);
   const FootMoves moves{now, footByFoot(places.before), footByFoot(places.way),
                         torch::zeros_like(now.narrow(1, 0, 2)), footByFoot(footScales(past))};
@@ -189,15 +182,20 @@ void KinematicBase::fitHold(const torch::Tensor& pose, const Past& past) {
   }
 }
 
-void KinematicBase::fitGate(const torch::Tensor& pose, const Past& past,
-                            const torch::Tensor& predicted) {
-  const auto clusters = footClusters(past);
-  const Foreseen foreseen = foreseenOn(past, clusters);
-  const FootGate gate = gateOf(past, clusters, foreseen, predicted);
-  const auto places = footPlaces(chart(), pose, foreseen);
-  const FootMoves moves{footByFoot(places.now), footByFoot(places.before), footByFoot(places.way),
-                        footByFoot(gate.foreseen), footByFoot(footScales(past))};
-  const auto cluster = footByFoot(clusters);
+/// What the fits of gates and legs look at: frames as they are foreseen, and where feet went.
+struct KinematicBase::Footing {
+  torch::Tensor clusters;  ///< [N, feet]
+  Foreseen foreseen;
+  FootGate gate;  ///< with the tables as they were when it was made
+  FootPlaces places;
+  torch::Tensor scales;  ///< [N, feet]
+};
+
+void KinematicBase::fitGate(const Footing& f) {
+  const FootMoves moves{footByFoot(f.places.now), footByFoot(f.places.before),
+                        footByFoot(f.places.way), footByFoot(f.gate.foreseen),
+                        footByFoot(f.scales)};
+  const auto cluster = footByFoot(f.clusters);
   const FittedGate common = likeliestGate(moves, 0.5, 0.0);
   // What feet do at large is what any foot may do once in a while.
   const double far = common.radii[kGateKnots - 2].item<double>();
@@ -214,25 +212,21 @@ void KinematicBase::fitGate(const torch::Tensor& pose, const Past& past,
 
 /// How far knees leave the bend of their legs, and feet the lengths of their bones: with the
 /// distance that the foot goes.
-void KinematicBase::fitLegs(const torch::Tensor& pose, const Past& past,
-                            const torch::Tensor& predicted) {
-  const auto clusters = footClusters(past);
-  const Foreseen foreseen = foreseenOn(past, clusters);
-  const FootGate gate = gateOf(past, clusters, foreseen, predicted);
-  const auto places = footPlaces(chart(), pose, foreseen);
+void KinematicBase::fitLegs(const torch::Tensor& pose, const Footing& f) {
+  const auto& clusters = f.clusters;
   const auto distance = gateDistance(
-      places.now.narrow(-1, 0, 2) - gateCentre(gate.hold, gate.foreseen, places.before),
-      gateShift(gate.skew, places.way));
+      f.places.now.narrow(-1, 0, 2) - gateCentre(f.foreseen.hold, f.gate.foreseen, f.places.before),
+      gateShift(m_footSkew.index({clusters}), f.places.way));
   std::vector<int64_t> knees;
   for (const int64_t foot : m_feet) knees.push_back(m_parents[static_cast<size_t>(foot)]);
-  const auto bent = chartCoordinates(chart(), pose, foreseen)
+  const auto bent = chartCoordinates(chart(), pose, f.foreseen)
                         .index_select(1, torch::tensor(knees, torch::kInt64).to(pose.device()))
                         .select(-1, 1);
-  const auto offset = (bent - (1.0 - firmness(gate.hold)) * gate.knee).abs();
+  const auto offset = (bent - (1.0 - firmness(f.foreseen.hold)) * f.gate.knee).abs();
   const auto excess =
-      footExcess(places.now, places.before,
+      footExcess(f.places.now, f.places.before,
                  m_lengths.index_select(0, torch::tensor(m_feet, torch::kInt64).to(pose.device())),
-                 gate.hold, distance);
+                 f.foreseen.hold, distance);
   for (int64_t k = 0; k < m_config.footClusters; ++k) {
     const auto rows = clusters.eq(k);
     if (!rows.any().item<bool>()) continue;
@@ -253,7 +247,7 @@ void KinematicBase::fitRegimes(const torch::Tensor& local, const Past& past) {
   const auto keys = regimeFeatures(past);
   m_regimeCentres.copy_(clusterCentres(keys, m_config.regimes));
   m_richMean.copy_(rich.to(torch::kFloat64).mean(0));
-  const auto regime = assignment(keys, m_regimeCentres);
+  const auto regime = regimeOf(past);
   const auto total = static_cast<double>(rich.size(0));
   const int64_t width = rich.size(1) + 1, d = local.size(1);
   auto grams = torch::zeros({m_config.regimes, width, width}, torch::kFloat64);
@@ -340,15 +334,17 @@ void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input) {
   fitLimits(pose, past);
   fitForeseen(pose, past);
   fitHold(pose, past);
-  const Foreseen foreseen = foreseenOn(past, footClusters(past));
+  const auto clusters = footClusters(past);
+  const Foreseen foreseen = foreseenOn(past, clusters);
   fitRegimes(chartCoordinates(chart(), pose, foreseen).flatten(1), past);
-  const auto regime = assignment(regimeFeatures(past), m_regimeCentres);
+  const auto regime = regimeOf(past);
   const auto predicted = predictedChart(richRegressors(past), regime);
-  fitGate(pose, past, predicted);
-  fitLegs(pose, past, predicted);
+  const Footing footing{clusters, foreseen, gateOf(past, clusters, predicted),
+                        footPlaces(chart(), pose, foreseen), footScales(past)};
+  fitGate(footing);
+  fitLegs(pose, footing);
   const auto local =
-      toChart(chart(), pose, foreseen, gateOf(past, footClusters(past), foreseen, predicted))
-          .value.flatten(1);
+      toChart(chart(), pose, foreseen, gateOf(past, clusters, predicted)).value.flatten(1);
   // The few frames in which feet leave would otherwise set the spread of all.
   const auto residual = local - predicted * m_predictable;
   fitWhitening(torch::where(m_predictable.eq(0.0), residual.clamp(-kFarthest, kFarthest), residual),

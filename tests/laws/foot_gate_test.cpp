@@ -78,6 +78,7 @@ struct Leg {
   BoneChart chart{
       .parents = {-1, 0, 1, 2, 3},
       .feet = {3},
+      .knees = {2},
       .lengths = torch::tensor({0., 10., 40., 40., 10.}, torch::kFloat64),
       .axes =
           torch::tensor({{0., 1., 0.}, {1., 0., 0.}, {0., -1., 0.}, {0., -1., 0.}, {0., 0., 1.}},
@@ -98,11 +99,9 @@ struct Leg {
     foreseen = {.pose = pose + 0.5,
                 .last = last,
                 .places = last + (1.0 - hold) * 0.5,
-                .hold = torch::full({1, 1}, hold, torch::kFloat64),
-                .feet = {3}};
+                .hold = torch::full({1, 1}, hold, torch::kFloat64)};
     const auto ones = torch::ones({1, 1}, torch::kFloat64);
-    gate = {.hold = foreseen.hold,
-            .foreseen = torch::zeros({1, 1, 2}, torch::kFloat64),
+    gate = {.foreseen = torch::zeros({1, 1, 2}, torch::kFloat64),
             .knee = 0.1 * ones,
             .skew = 0.3 * ones,
             .radii = (0.01 * torch::arange(1, kGateKnots + 1, torch::kFloat64)).view({1, 1, -1}),
@@ -149,6 +148,16 @@ TEST(StandingLeg, LogDeterminantIsThatOfTheJacobian) {
     const double expected = std::get<1>(torch::slogdet(torch::stack(rows))).item<double>();
     EXPECT_NEAR(charted.logDet.item<double>(), expected, 1e-8) << hold;
   }
+}
+
+TEST(StandingLeg, KneesAreThoseOfLegsThatBend) {
+  const Leg leg(1.0);
+  EXPECT_EQ(kneesOf(leg.chart.parents, {3, 4}, leg.chart.lengths), (std::vector<int64_t>{2, 3}));
+  // A foot on the root has no knee; a bone of no length bends nothing; two feet share one knee.
+  EXPECT_EQ(kneesOf({-1, 0}, {1}, torch::tensor({0., 40.})), (std::vector<int64_t>{-1}));
+  EXPECT_EQ(kneesOf({-1, 0, 1}, {2}, torch::tensor({0., 0., 40.})), (std::vector<int64_t>{-1}));
+  EXPECT_EQ(kneesOf({-1, 0, 1, 1}, {2, 3}, torch::tensor({0., 40., 40., 40.})),
+            (std::vector<int64_t>{1, -1}));
 }
 
 TEST(StandingLeg, AnImpossiblePlaceIsAimedAt) {

@@ -25,21 +25,6 @@ constexpr const char* kLogHeader =
     "step,seconds,learning_rate,train_bits_per_frame,valid_bits_per_frame,test_bits_per_frame,"
     "gradient_norm,skipped\n";
 
-double rateAt(const TrainingConfig& c, int64_t step) {
-  const double t = static_cast<double>(step + 1), warm = static_cast<double>(c.warmupSteps);
-  if (c.schedule == "noam")
-    return std::max(c.minimumRate, c.learningRate * std::sqrt(warm) *
-                                       std::min(t * std::pow(warm, -1.5), 1.0 / std::sqrt(t)));
-  if (c.schedule == "cosine") {
-    if (t < warm) return c.learningRate * t / warm;
-    const double done =
-        std::min(1.0, (t - warm) / std::max(1.0, static_cast<double>(c.steps) - warm));
-    return c.minimumRate +
-           0.5 * (c.learningRate - c.minimumRate) * (1.0 + std::cos(std::numbers::pi * done));
-  }
-  return c.learningRate;
-}
-
 /// Mean log-density in nats of the real frames of a batch; counts them in `frames`.
 torch::Tensor meanLogLikelihood(TrainableModel& net, const TrainingBatch& batch,
                                 at::Generator* dropout, double* frames) {
@@ -224,7 +209,7 @@ class Run {
       skip(net);
     } else {
       m_state.nonFinite = 0;
-      m_adam->step(rateAt(m_config, m_state.step), ++m_state.updates);
+      m_adam->step(learningRateAt(m_config, m_state.step), ++m_state.updates);
       updateAverage(net);
       m_lossSum += value;
       m_normSum += norm;
@@ -345,8 +330,8 @@ class Run {
     std::ofstream log(m_request.run / "log.csv", std::ios::app);
     const double count = std::max<double>(1.0, static_cast<double>(m_lossCount));
     log << fmt::format("{},{:.1f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", m_state.step,
-                       m_state.seconds, rateAt(m_config, m_state.step - 1), m_lastTrainBits, valid,
-                       test, m_normSum / count, m_skipped);
+                       m_state.seconds, learningRateAt(m_config, m_state.step - 1), m_lastTrainBits,
+                       valid, test, m_normSum / count, m_skipped);
     if (!log.flush()) throw FileError((m_request.run / "log.csv").string() + ": cannot write");
   }
 

@@ -29,6 +29,8 @@ struct TrainingConfig {
 };
 TrainingConfig trainingConfigFromJson(const Json& value, const std::string& origin);
 Json toJson(const TrainingConfig& config);
+/// Of the step that follows `step` finished ones, by the configuration's schedule.
+double learningRateAt(const TrainingConfig& config, int64_t step);
 
 struct TrainRequest {
   Json config;  ///< {"family", "name", "model", "training"}

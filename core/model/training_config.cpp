@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "model/trainer.h"
 
 namespace marey {
@@ -63,6 +67,21 @@ Json toJson(const TrainingConfig& c) {
           {"validation_share", c.validationShare},
           {"snapshot_minutes", c.snapshotMinutes},
           {"use_reversed", c.useReversed}};
+}
+
+double learningRateAt(const TrainingConfig& c, int64_t step) {
+  const double t = static_cast<double>(step + 1), warm = static_cast<double>(c.warmupSteps);
+  if (c.schedule == "noam")
+    return std::max(c.minimumRate, c.learningRate * std::sqrt(warm) *
+                                       std::min(t * std::pow(warm, -1.5), 1.0 / std::sqrt(t)));
+  if (c.schedule == "cosine") {
+    if (t < warm) return c.learningRate * t / warm;
+    const double done =
+        std::min(1.0, (t - warm) / std::max(1.0, static_cast<double>(c.steps) - warm));
+    return c.minimumRate +
+           0.5 * (c.learningRate - c.minimumRate) * (1.0 + std::cos(std::numbers::pi * done));
+  }
+  return c.learningRate;
 }
 
 }  // namespace marey

@@ -36,6 +36,15 @@ class MotionFiles(SharedModelCase):
         result = self.run_json("analyze", self.damaged("good.bvh", self.lines), "--resamples", 0)
         self.assertEqual(result["clips"], 1)
 
+    def test_a_joint_of_another_name_than_the_models_is_named(self):
+        lines = [line.replace("JOINT LeftFoot", "JOINT LeftPaw") for line in self.lines]
+        self.assertEqual(sum(a != b for a, b in zip(lines, self.lines)), 1)
+        path = self.damaged("renamed.bvh", lines)
+        for words in (["score", self.model, path],
+                      ["sample", self.model, "--path", f"clip:{path}", "--out", self.dir / "out"]):
+            with self.subTest(command=words[0]):
+                self.assert_refused([*words, "--quiet"], "renamed.bvh", "LeftFoot", "LeftPaw")
+
     def test_a_number_that_is_none_is_named_by_line_and_frame(self):
         row = self.lines[self.time + 3].split()
         row[5] = "nan"

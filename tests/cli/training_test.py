@@ -1,4 +1,5 @@
 """What a killed run, a repeated run and a prolonged run have in common: the same numbers."""
+import math
 import re
 import signal
 import subprocess
@@ -76,6 +77,16 @@ class KilledTraining(Case):
         self.finish(*self.words("unbroken"))
         # Not the best one: the stop adds a validation that the unbroken run has not.
         self.assert_same_tensors("stopped", "unbroken", "last.marey", "state.marey")
+
+    def test_resuming_a_run_that_has_ended_changes_nothing_and_says_what_it_reached(self):
+        self.finish(*self.words("run", "--steps", "10"))
+        files = [p for p in sorted((self.dir / "run").rglob("*")) if p.is_file()]
+        before = {p: p.read_bytes() for p in files}
+        result = self.run_json(*self.words("run", "--steps", "10", "--resume")[1:])
+        self.assertEqual(before, {p: p.read_bytes() for p in files})
+        self.assertEqual(result["steps"], 10)
+        self.assertIsNone(result["train_bits_per_frame"])
+        self.assertTrue(math.isfinite(result["valid_bits_per_frame"]))
 
     def test_a_run_is_not_overwritten_and_another_one_is_not_resumed(self):
         self.finish(*self.words("run", "--steps", "2"))

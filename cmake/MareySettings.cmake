@@ -27,5 +27,6 @@ if(MAREY_SANITIZE)
 endif()
 if(MAREY_TIDY)
   find_program(CLANG_TIDY_PROGRAM NAMES clang-tidy clang-tidy-14 REQUIRED)
-  set(CMAKE_CXX_CLANG_TIDY "${CLANG_TIDY_PROGRAM};--quiet")
+  # GCC's warning options are handed to clang too.
+  set(CMAKE_CXX_CLANG_TIDY "${CLANG_TIDY_PROGRAM};--quiet;--extra-arg=-Wno-unknown-warning-option")
 endif()

@@ -25,6 +25,7 @@ if(NOT MAREY_TRAIN_ONLY)
   find_package(fmt QUIET)
   marey_require_here(ZLIB zlib1g-dev)
   marey_require_here(Boost libboost-dev)
+  marey_require_here(TinyGLTF libtinygltf-dev)
   find_package(PkgConfig REQUIRED)
   # Debian's libzip CMake files demand the programs zipcmp, zipmerge and ziptool; its
   # pkg-config file demands the library alone.
@@ -33,6 +34,13 @@ if(NOT MAREY_TRAIN_ONLY)
     message(FATAL_ERROR "libzip was not found. On Debian 12: apt-get install libzip-dev "
                         "(or run packaging/run, which installs every package).")
   endif()
+  foreach(part avcodec avfilter avformat avutil swscale)
+    pkg_check_modules(LIB${part} QUIET lib${part})
+    if(NOT LIB${part}_FOUND)
+      message(FATAL_ERROR "lib${part} was not found. On Debian 12: apt-get install lib${part}-dev "
+                          "(or run packaging/run, which installs every package).")
+    endif()
+  endforeach()
 endif()
 
 # fmt: the shared library where it is installed, else its headers alone.

@@ -6,6 +6,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/command.h"
+#include "cli/fit_report.h"
 #include "cli/readers.h"
 #include "io/clip_io.h"
 #include "io/text.h"
@@ -86,7 +87,10 @@ class Converter {
       progress.report(static_cast<double>(i + 1) / static_cast<double>(files.size()));
     }
     if (folder) m_staged->commit();
-    return {{"written", m_written}};
+    Json result = {{"written", m_written}};
+    m_fits.addTo(result);
+    m_fits.tell(m_context);
+    return result;
   }
 
  private:
@@ -102,10 +106,13 @@ class Converter {
     if (m_options.fps > 0.0) out = resampled(out, m_options.fps);
     io::WriteOptions write = m_options.write;
     if (write.format.empty() && isFolder(m_options.out)) write.format = "bvh";
-    write.recipe = {{"command", m_context.commandLine}, {"input", from.string()}};
+    write.recipe = {
+        {"marey", MAREY_VERSION}, {"command", m_context.commandLine}, {"input", from.string()}};
     if (!m_options.frames.empty()) write.recipe["frames"] = m_options.frames;
     if (m_options.fps > 0.0) write.recipe["resampled_to_fps"] = m_options.fps;
-    for (const fs::path& path : io::writeClip(out, to, write))
+    const io::WrittenClip written = io::writeClip(out, to, write);
+    m_fits.add(written.fit);
+    for (const fs::path& path : written.files)
       m_written.push_back((m_staged ? fs::path(m_options.out) / path.filename() : path).string());
   }
 
@@ -115,6 +122,7 @@ class Converter {
   std::optional<StagedFolder> m_staged;
   std::set<std::string> m_names;
   std::vector<std::string> m_written;
+  FitReport m_fits;
 };
 
 void runConvert(const Context& context, const ConvertOptions& options) {
@@ -135,7 +143,8 @@ void addConvertCommand(CLI::App& app, Context& context) {
   command->add_option("--out", options->out, "file, or folder for several clips")->required();
   command->add_option(
       "--format", options->write.format,
-      "bvh, npz, csv or csv-wide; default: by the file's extension, bvh in a folder");
+      "bvh, gltf, glb, npz, csv or csv-wide; default: by the file's extension, bvh in a "
+      "folder");
   command->add_option("--fps", options->fps, "resample to this rate")->check(CLI::PositiveNumber);
   command->add_option("--frames", options->frames, "a:b, frames a to b-1 of the input, from 0");
   command->add_option("--unit", options->write.unit,

@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "cli/command.h"
+#include "cli/fit_report.h"
 #include "experiment/path_choice.h"
 #include "io/clip_io.h"
 
@@ -40,6 +41,7 @@ void run(Options& o, const Context& context) {
   StagedFolder folder(o.out);
   Progress progress = context.progress("sample");
   Json names = Json::array();
+  FitReport fits;
   const auto begin = std::chrono::steady_clock::now();
   for (int first = 0; first < o.samples; first += kBatch) {
     request.firstSample = first;
@@ -52,7 +54,7 @@ void run(Options& o, const Context& context) {
       const auto file = clip.name + "." + o.format;
       io::WriteOptions write{.format = o.format};
       write.recipe = note;
-      io::writeClip(clip, folder.path() / file, write);
+      fits.add(io::writeClip(clip, folder.path() / file, write).fit);
       names.push_back((std::filesystem::path(o.out) / file).string());
     }
   }
@@ -60,13 +62,16 @@ void run(Options& o, const Context& context) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   folder.commit();
   const double frames = static_cast<double>(o.samples) * static_cast<double>(request.path.size());
-  context.print(
-      {{"clips", names},
-       {"frames_per_s", frames / seconds},
-       {"seconds_each", static_cast<double>(request.path.size()) / model->info().features.fps}},
-      fmt::format("{} motions of {:.1f} s in {} ({:.0f} frames/s)", o.samples,
-                  static_cast<double>(request.path.size()) / model->info().features.fps, o.out,
-                  frames / seconds));
+  Json result = {
+      {"clips", names},
+      {"frames_per_s", frames / seconds},
+      {"seconds_each", static_cast<double>(request.path.size()) / model->info().features.fps}};
+  fits.addTo(result);
+  fits.tell(context);
+  context.print(result,
+                fmt::format("{} motions of {:.1f} s in {} ({:.0f} frames/s)", o.samples,
+                            static_cast<double>(request.path.size()) / model->info().features.fps,
+                            o.out, frames / seconds));
 }
 
 }  // namespace
@@ -105,8 +110,8 @@ void addSampleCommand(CLI::App& app, Context& context) {
                    "Seconds generated and dropped after a start from the mean pose")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--format", o->format, "bvh, npz or csv")
-      ->check(CLI::IsMember({"bvh", "npz", "csv"}))
+  command->add_option("--format", o->format, "bvh, gltf, glb, npz or csv")
+      ->check(CLI::IsMember({"bvh", "gltf", "glb", "npz", "csv"}))
       ->capture_default_str();
 }
 

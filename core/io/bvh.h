@@ -15,9 +15,9 @@ Clip parseBvh(std::string_view bytes, const std::string& origin, const ReadOptio
 std::vector<Clip> readBvh(std::string_view bytes, const std::filesystem::path& path,
                           const ReadOptions& options);
 
-/// Degrees, centimetres unless options.unit says otherwise. Rotations are unwrapped; a clip
-/// without rotations becomes translations of every joint with zero rotation, and the recipe says
-/// so. The recipe goes to PATH.recipe.json. Throws InputError or FileError.
+/// Degrees, centimetres unless options.unit says otherwise. Rotations are unwrapped. The
+/// recipe goes to PATH.recipe.json. Throws InputError (also for a clip without rotations, which
+/// writeClip fits) or FileError.
 std::vector<std::filesystem::path> writeBvh(const Clip& clip, const std::filesystem::path& path,
                                             const WriteOptions& options);
 

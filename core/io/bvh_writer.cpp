@@ -6,7 +6,6 @@
 #include "base/json.h"
 #include "io/bvh.h"
 #include "io/export_record.h"
-#include "io/known_skeletons.h"
 #include "io/normalise.h"
 #include "motion/rotation.h"
 
@@ -17,28 +16,11 @@ namespace {
 constexpr float kStillM = 1e-6f;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// Rotations for a clip that has none: none turned, every joint placed by its translation.
-Clip asTranslations(Clip clip) {
-  clip.skeleton = withOffsetsFrom(clip);
-  const auto width = std::max<size_t>(clip.skeleton->names.size(), 1);
-  JointTransforms transforms;
-  transforms.rotations.assign(clip.positions.size(), Quat::Identity());
-  for (size_t i = 0; i < clip.positions.size(); ++i) {
-    const int parent = clip.skeleton->parents[i % width];
-    const Vec3 origin = parent < 0 ? Vec3(Vec3::Zero())
-                                   : clip.positions[i - i % width + static_cast<size_t>(parent)];
-    transforms.translations.push_back(clip.positions[i] - origin);
-  }
-  clip.transforms = std::move(transforms);
-  return clip;
-}
-
 class BvhText {
  public:
-  BvhText(const Clip& clip, const EulerOrder& order, bool rotates, double metresPerUnit)
+  BvhText(const Clip& clip, const EulerOrder& order, double metresPerUnit)
       : m_clip(clip),
         m_order(order),
-        m_rotates(rotates),
         m_perMetre(1.0 / metresPerUnit),
         m_children(clip.skeleton->names.size()) {
     const Skeleton& s = *clip.skeleton;
@@ -142,7 +124,7 @@ class BvhText {
           print("{}{:.6f} {:.6f} {:.6f} ", separator, p.x(), p.y(), p.z());
           separator = "";
         }
-        if (m_rotates) previous[j] = angles(m_clip.transforms->rotations[i], t, previous[j]);
+        previous[j] = angles(m_clip.transforms->rotations[i], t, previous[j]);
         const Vec3d degrees = previous[j] * kDegrees;
         print("{}{:.6f} {:.6f} {:.6f}", separator, degrees[0], degrees[1], degrees[2]);
         separator = " ";
@@ -158,7 +140,6 @@ class BvhText {
 
   const Clip& m_clip;
   EulerOrder m_order;
-  bool m_rotates;
   double m_perMetre;
   std::vector<std::vector<int>> m_children;
   std::vector<char> m_moves;   ///< joints with position channels
@@ -174,15 +155,14 @@ std::vector<std::filesystem::path> writeBvh(const Clip& clip, const std::filesys
   const EulerOrder order = parseEulerOrder(options.eulerOrder);
   if (!order.allDifferent())
     throw UsageError("Euler order: expected three different axes for BVH, found " + order.text());
-  const bool rotates = clip.transforms.has_value();
-  Clip out = rotates ? clip : asTranslations(clip);
+  if (!clip.transforms)
+    throw InputError({.path = path.string()}, "a clip with rotations (see fitSkeleton)",
+                     "positions only");
+  Clip out = clip;
   if (checkedUp(options.up) == "z") turnToZUp(out);
-  writeFileAtomically(path, BvhText(out, order, rotates || options.up == "z", unit.metres).text());
-  Json details = {
+  writeFileAtomically(path, BvhText(out, order, unit.metres).text());
+  const Json details = {
       {"format", "bvh"}, {"unit", unit.name}, {"up", options.up}, {"euler_order", order.text()}};
-  if (!rotates)
-    details["note"] =
-        "positions only: the clip has no rotations, every joint is placed by its translation";
   writeJson(recipePath(path), exportRecord(clip, options, details));
   return {path, recipePath(path)};
 }

@@ -10,6 +10,8 @@
 #include "io/bvh.h"
 #include "io/csv_writer.h"
 #include "io/dog_text.h"
+#include "io/export_record.h"
+#include "io/gltf_writer.h"
 #include "io/npz_clips.h"
 #include "io/text.h"
 
@@ -57,7 +59,7 @@ const ClipFormat& formatForWriting(const std::filesystem::path& path, const Writ
 
 const std::vector<ClipFormat>& clipFormats() {
   static const std::vector<ClipFormat> formats = {
-      {"bvh", "Biovision hierarchy", {".bvh"}, canReadBvh, readBvh, writeBvh},
+      {"bvh", "Biovision hierarchy", {".bvh"}, canReadBvh, readBvh, writeBvh, true},
       {"amc", "Acclaim motion with its ASF skeleton", {".amc"}, canReadAmc, readAmc, nullptr},
       {"npz", "NumPy archive of clips", {".npz"}, canReadNpz, readNpzClips, writeNpzClip},
       {"dog-text",
@@ -66,6 +68,8 @@ const std::vector<ClipFormat>& clipFormats() {
        canReadDogText,
        readDogText,
        nullptr},
+      {"gltf", "glTF 2.0 as text", {".gltf"}, nullptr, nullptr, writeGltf, true},
+      {"glb", "glTF 2.0 in one binary file", {".glb"}, nullptr, nullptr, writeGlb, true},
       {"csv", "positions, one row per frame and joint", {".csv"}, nullptr, nullptr, writeCsvLong},
       {"csv-wide", "positions, one row per frame", {}, nullptr, nullptr, writeCsvWide},
   };
@@ -127,10 +131,17 @@ Clip readClip(const std::filesystem::path& path, const ReadOptions& options) {
   return std::move(clips.front());
 }
 
-std::vector<std::filesystem::path> writeClip(const Clip& clip, const std::filesystem::path& path,
-                                             const WriteOptions& options) {
+WrittenClip writeClip(const Clip& clip, const std::filesystem::path& path,
+                      const WriteOptions& options) {
   validate(clip);
-  return formatForWriting(path, options).write(clip, path, options);
+  const ClipFormat& format = formatForWriting(path, options);
+  if (!format.holdsRotations || clip.transforms)
+    return {.files = format.write(clip, path, options)};
+  const SkeletonFit fit = fitSkeleton(clip);
+  WriteOptions recorded = options;
+  if (!recorded.recipe.is_object()) recorded.recipe = Json::object();
+  recorded.recipe["fit"] = fitJson(fit.residual);
+  return {.files = format.write(withFit(clip, fit), path, recorded), .fit = fit.residual};
 }
 
 }  // namespace marey::io

@@ -20,9 +20,11 @@ bool isMotionFile(const std::filesystem::path& path);
 /// First bytes of a file, as formatOfContent wants them. Throws FileError.
 std::string readHead(const std::filesystem::path& path);
 
-/// Writes a clip in options.format, else the format of the path's extension; returns every file
-/// written. Throws UsageError (unknown format or extension), InputError or FileError.
-std::vector<std::filesystem::path> writeClip(const Clip& clip, const std::filesystem::path& path,
-                                             const WriteOptions& options = {});
+/// Writes a clip in options.format, else the format of the path's extension. Formats that hold
+/// rotations get them from fitSkeleton where the clip has none; the recipe then holds the residual
+/// under "fit" (see fitJson).
+/// Throws UsageError (unknown format or extension), InputError or FileError.
+WrittenClip writeClip(const Clip& clip, const std::filesystem::path& path,
+                      const WriteOptions& options = {});
 
 }  // namespace marey::io

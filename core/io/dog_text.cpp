@@ -3,6 +3,7 @@
 #include "io/known_skeletons.h"
 #include "io/normalise.h"
 #include "io/text.h"
+#include "motion/skeleton_fit.h"
 
 namespace marey::io {
 namespace {

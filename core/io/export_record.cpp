@@ -21,6 +21,18 @@ Json exportRecord(const Clip& clip, const WriteOptions& options, const Json& det
   return out;
 }
 
+Json fitJson(const FitResidual& fit) {
+  constexpr double kCentimetres = 100.0;
+  Json perJoint = Json::object();
+  for (size_t j = 0; j < fit.joints.size(); ++j)
+    perJoint[fit.joints[j]] = kCentimetres * fit.rmsM[j];
+  return {{"note",
+           "the clip has positions only: rotations of a skeleton with constant bones were fitted "
+           "to them by least squares"},
+          {"fit_residual_cm", perJoint},
+          {"fit_residual_max_cm", kCentimetres * fit.largestM()}};
+}
+
 std::filesystem::path recipePath(const std::filesystem::path& path) {
   std::filesystem::path out = path;
   out += ".recipe.json";

@@ -9,6 +9,7 @@
 
 #include "base/json.h"
 #include "motion/clip.h"
+#include "motion/skeleton_fit.h"
 
 namespace marey::io {
 
@@ -20,6 +21,7 @@ struct ReadOptions {
   bool dropStaticRoot = true;  ///< leave out a root joint that never moves or only
                                ///< marks the body's place on the floor (its motion is kept)
   std::filesystem::path asf;   ///< skeleton of an AMC file; found beside it when empty
+  bool swapSides = false;      ///< the file names left what is right
 };
 
 struct WriteOptions {
@@ -40,9 +42,17 @@ struct ClipFormat {
   /// The clips of a file's bytes. `path` names them and leads to companion files.
   std::vector<Clip> (*read)(std::string_view bytes, const std::filesystem::path& path,
                             const ReadOptions& options) = nullptr;
-  /// Writes one clip atomically; returns every file written.
+  /// Writes one clip atomically; returns every file written. See `holdsRotations`.
   std::vector<std::filesystem::path> (*write)(const Clip& clip, const std::filesystem::path& path,
                                               const WriteOptions& options) = nullptr;
+  /// The format stores rotations: `write` wants clips that have them (see writeClip).
+  bool holdsRotations = false;
+};
+
+/// What a writing left behind.
+struct WrittenClip {
+  std::vector<std::filesystem::path> files;
+  std::optional<FitResidual> fit;  ///< where rotations had to be fitted to positions
 };
 
 /// Every format, in the order in which ties of canRead are broken.

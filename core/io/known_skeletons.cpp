@@ -5,7 +5,7 @@ namespace {
 
 Skeleton unmeasured(std::vector<std::string> names, std::vector<int> parents) {
   Skeleton out;
-  out.offsets.assign(names.size(), Vec3::Zero());
+  out.offsets.assign(names.size(), Eigen::Vector3f::Zero());
   out.names = std::move(names);
   out.parents = std::move(parents);
   return out;
@@ -31,22 +31,6 @@ Skeleton dogSkeleton() {
                      "Tail1",         "Tail1Site"},
                     {-1, 0,  1, 2,  3,  4,  2, 6,  7,  8,  9, 2,  11, 12,
                      13, 14, 0, 16, 17, 18, 0, 20, 21, 22, 0, 24, 25});
-}
-
-std::shared_ptr<const Skeleton> withOffsetsFrom(const Clip& clip) {
-  Skeleton out = *clip.skeleton;
-  if (clip.frameCount() == 0) return clip.skeleton;
-  out.offsets[0] = clip.at(0, 0);
-  for (const auto& [parent, child] : out.bones()) {
-    double sum = 0.0;
-    for (int t = 0; t < clip.frameCount(); ++t)
-      sum += (clip.at(t, child) - clip.at(t, parent)).norm();
-    const Vec3 first = clip.at(0, child) - clip.at(0, parent);
-    const auto mean = static_cast<float>(sum / clip.frameCount());
-    out.offsets[static_cast<size_t>(child)] =
-        first.norm() > 0.0f ? Vec3(first.normalized() * mean) : Vec3(0.0f, mean, 0.0f);
-  }
-  return std::make_shared<const Skeleton>(std::move(out));
 }
 
 }  // namespace marey::io

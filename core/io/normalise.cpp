@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/error.h"
 #include "motion/kinematics.h"
+#include "motion/roles.h"
 
 namespace marey::io {
 namespace {
@@ -119,6 +121,7 @@ Clip normalised(Clip clip, const FormatFacts& facts, const ReadOptions& options)
   applyUnit(clip, facts, options);
   applyUp(clip, facts, options);
   applyRate(clip, options);
+  if (options.swapSides) swapSides(clip);
   validate(clip);
   return options.dropStaticRoot ? withoutExtraRoot(std::move(clip)) : clip;
 }
@@ -128,6 +131,41 @@ void turnToYUp(Clip& clip) {
 }
 void turnToZUp(Clip& clip) {
   turnAboutX(clip, 1.0f);
+}
+
+void swapSides(Clip& clip) {
+  const Skeleton& old = *clip.skeleton;
+  const std::vector<int> mirror = rolesOf(old).mirror;
+  const auto other = [&](int joint) { return mirror[static_cast<size_t>(joint)]; };
+  bool any = false;
+  for (int j = 0; j < old.jointCount(); ++j) {
+    const int parent = old.parents[static_cast<size_t>(j)];
+    const int expected = parent < 0 ? -1 : other(parent);
+    any = any || other(j) != j;
+    if (old.parents[static_cast<size_t>(other(j))] != expected)
+      throw InputError({.path = clip.source.path, .item = old.names[static_cast<size_t>(j)]},
+                       "the same tree of joints on both sides", "another one on the other side");
+  }
+  if (!any)
+    throw InputError({.path = clip.source.path}, "joints of a left and a right side",
+                     "none by their names");
+  const auto permute = [&](auto& values) {
+    const auto before = values;
+    const auto joints = static_cast<size_t>(old.jointCount());
+    for (size_t i = 0; i < values.size(); ++i)
+      values[i] = before[i - i % joints + static_cast<size_t>(mirror[i % joints])];
+  };
+  auto body = std::make_shared<Skeleton>(old);
+  permute(body->offsets);
+  for (Skeleton::EndSite& end : body->endSites) end.parent = other(end.parent);
+  clip.skeleton = std::move(body);
+  permute(clip.positions);
+  if (clip.transforms) {
+    permute(clip.transforms->rotations);
+    permute(clip.transforms->translations);
+  }
+  if (!clip.source.eulerOrders.empty()) permute(clip.source.eulerOrders);
+  clip.source.notes.push_back("left and right were swapped, as asked for");
 }
 
 void scaleLengths(Clip& clip, double factor) {

@@ -22,6 +22,9 @@ Clip normalised(Clip clip, const FormatFacts& facts, const ReadOptions& options)
 /// Turns a Z-up clip into a Y-up one, (x, y, z) -> (x, z, -y), and back.
 void turnToYUp(Clip& clip);
 void turnToZUp(Clip& clip);
+/// Gives every left joint the motion and the offset of its right one and the other way round, names
+/// staying where they are. Throws InputError for a skeleton whose sides do not match.
+void swapSides(Clip& clip);
 /// Multiplies every length.
 void scaleLengths(Clip& clip, double factor);
 

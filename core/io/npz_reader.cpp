@@ -5,6 +5,7 @@
 #include "io/normalise.h"
 #include "io/npz_clips.h"
 #include "motion/rotation.h"
+#include "motion/skeleton_fit.h"
 
 namespace marey::io {
 namespace {

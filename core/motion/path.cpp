@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "base/json.h"
 
 namespace marey {
 namespace {
@@ -14,6 +13,7 @@ namespace {
 constexpr double kDefaultSpeedMS = 1.2;
 /// Straight pieces that stand for one span of the spline when its length is measured.
 constexpr int kPiecesPerSpan = 64;
+constexpr double kRadians = std::numbers::pi / 180.0;
 
 using Eigen::Vector2d;  // (x, z)
 
@@ -212,19 +212,18 @@ std::vector<RootFrame> samplePath(const std::vector<WayPoint>& points, double fp
   return out;
 }
 
-std::vector<WayPoint> readPathFile(const std::filesystem::path& file) {
-  const Json json = readJson(file);
-  JsonReader reader(json, file.string());
+std::vector<WayPoint> wayPointsFromJson(const Json& value, const std::string& origin,
+                                        const std::string& prefix) {
+  JsonReader reader(value, origin, prefix);
   const std::string facing = reader.optional<std::string>("facing", "path");
   if (facing != "path" && facing != "fixed")
     throw InputError(reader.place("facing"), "'path' or 'fixed'", "'" + facing + "'");
   const Json& list = reader.raw("waypoints");
   reader.finish();
   if (!list.is_array()) throw InputError(reader.place("waypoints"), "an array", list.type_name());
-  constexpr double kRadians = std::numbers::pi / 180.0;
   std::vector<WayPoint> points;
   for (const Json& item : list) {
-    JsonReader one(item, file.string(), fmt::format("waypoints[{}].", points.size()));
+    JsonReader one(item, origin, fmt::format("{}waypoints[{}].", prefix, points.size()));
     WayPoint p{.x = one.required<double>("x"),
                .z = one.required<double>("z"),
                .timeS = {},
@@ -239,6 +238,26 @@ std::vector<WayPoint> readPathFile(const std::filesystem::path& file) {
     points.push_back(p);
   }
   return points;
+}
+
+Json toJson(const std::vector<WayPoint>& points) {
+  Json list = Json::array();
+  for (const WayPoint& p : points) {
+    Json one = {{"x", p.x}, {"z", p.z}};
+    if (p.timeS) one["time"] = *p.timeS;
+    if (p.speedMS) one["speed"] = *p.speedMS;
+    if (p.facing) one["facing_deg"] = *p.facing / kRadians;
+    list.push_back(one);
+  }
+  return {{"waypoints", list}};
+}
+
+std::vector<WayPoint> readPathFile(const std::filesystem::path& file) {
+  return wayPointsFromJson(readJson(file), file.string());
+}
+
+void writePathFile(const std::filesystem::path& file, const std::vector<WayPoint>& points) {
+  writeJson(file, toJson(points));
 }
 
 }  // namespace marey

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "motion/features.h"
 
 namespace marey {
@@ -17,6 +18,8 @@ struct WayPoint {
   std::optional<double> timeS;    ///< when to be there; or
   std::optional<double> speedMS;  ///< how fast to leave it
   std::optional<double> facing;   ///< heading in radians; default: along the path
+
+  bool operator==(const WayPoint&) const = default;
 };
 
 /// Root frames along way-points at `fps`. Throws InputError (naming `origin`) for fewer than two
@@ -27,6 +30,12 @@ std::vector<RootFrame> samplePath(const std::vector<WayPoint>& points, double fp
 /// A path file: {"waypoints": [{"x","z","time"|"speed","facing_deg"}...], "facing":
 /// "path"|"fixed"}.
 std::vector<WayPoint> readPathFile(const std::filesystem::path& file);
+/// Throws FileError.
+void writePathFile(const std::filesystem::path& file, const std::vector<WayPoint>& points);
+/// The object of a path file, wherever it stands. Throws InputError naming `origin` and the key.
+std::vector<WayPoint> wayPointsFromJson(const Json& value, const std::string& origin,
+                                        const std::string& prefix = {});
+Json toJson(const std::vector<WayPoint>& points);
 
 struct PathPreset {
   std::string name;

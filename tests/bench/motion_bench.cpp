@@ -6,6 +6,8 @@
 #include "base/atomic_file.h"
 #include "io/clip_io.h"
 #include "motion/features.h"
+#include "motion/resample.h"
+#include "motion/skeleton_fit.h"
 #include "motion/walker.h"
 #include "stats/footsteps.h"
 
@@ -34,6 +36,16 @@ void features(benchmark::State& state) {
                                                   benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(features)->Unit(benchmark::kMillisecond);
+
+/// Rotations of 60 s at 20 frames per second out of positions of which no skeleton is.
+void fit(benchmark::State& state) {
+  Clip clip = sliceFrames(resampled(walk(), 20.0), 0, 1200);
+  clip.transforms.reset();
+  for (size_t i = 0; i < clip.positions.size(); ++i)
+    clip.positions[i].x() += 0.02f * static_cast<float>(i % 7) / 7.0f;
+  for (auto _ : state) benchmark::DoNotOptimize(fitSkeleton(clip));
+}
+BENCHMARK(fit)->Unit(benchmark::kMillisecond);
 
 void footsteps(benchmark::State& state) {
   const std::vector<Clip> clips(static_cast<size_t>(state.range(0)), walk());

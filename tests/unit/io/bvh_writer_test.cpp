@@ -75,15 +75,32 @@ TEST(BvhWriter, AnglesDoNotJumpByWholeTurns) {
   EXPECT_GT(rows, 0u);
 }
 
-TEST(BvhWriter, AClipOfPositionsAloneKeepsThemAsTranslationsAndSaysSo) {
+TEST(BvhWriter, AClipOfPositionsAloneBecomesRotationsAndItsResidualIsTheStatedOne) {
   const test::TemporaryFolder folder;
   Clip clip = positioned(smallPerson());
   clip.transforms.reset();
-  writeClip(clip, folder / "a.bvh");
+  for (size_t i = 0; i < clip.positions.size(); ++i)
+    clip.positions[i].z() += 0.01f * static_cast<float>(std::sin(2.3 * static_cast<double>(i)));
+  const WrittenClip written = writeClip(clip, folder / "a.bvh", {.recipe = {{"seed", 7}}});
   const Clip back = readClip(folder / "a.bvh");
-  EXPECT_LT(largestDistance(clip, back), 1e-5);
+  const double largest = largestDistance(clip, back);
+  EXPECT_GT(largest, 0.002);
+  ASSERT_TRUE(written.fit);
+  EXPECT_NEAR(written.fit->largestM(), largest, 1e-5);
   const Json recipe = readJson(folder / "a.bvh.recipe.json");
-  test::expectContains(recipe["export"]["note"].get<std::string>(), "positions only");
+  EXPECT_EQ(recipe["seed"], 7);
+  test::expectContains(recipe["fit"]["note"].get<std::string>(), "positions only");
+  EXPECT_NEAR(recipe["fit"]["fit_residual_max_cm"].get<double>(), 100.0 * largest, 1e-3);
+  EXPECT_EQ(recipe["fit"]["fit_residual_cm"].size(), 10u);
+  // Bones are constant and turn: only the root has position channels.
+  const std::string text = readFile(folder / "a.bvh");
+  EXPECT_EQ(text.find("CHANNELS 6"), text.rfind("CHANNELS 6"));
+}
+
+TEST(BvhWriter, AClipWithRotationsIsNotFitted) {
+  const test::TemporaryFolder folder;
+  EXPECT_FALSE(writeClip(positioned(smallPerson()), folder / "a.bvh").fit);
+  EXPECT_FALSE(readJson(folder / "a.bvh.recipe.json").contains("fit"));
 }
 
 TEST(BvhWriter, ZUpFilesComeBackAsTheyWere) {
@@ -117,7 +134,7 @@ TEST(BvhWriter, JointsInAnotherOrderAreWrittenDepthFirst) {
 TEST(BvhWriter, TheRecipeLiesBesideTheFile) {
   const test::TemporaryFolder folder;
   const auto written =
-      writeClip(positioned(smallPerson()), folder / "a.bvh", {.recipe = {{"seed", 7}}});
+      writeClip(positioned(smallPerson()), folder / "a.bvh", {.recipe = {{"seed", 7}}}).files;
   EXPECT_EQ(written,
             (std::vector<std::filesystem::path>{folder / "a.bvh", folder / "a.bvh.recipe.json"}));
   const Json recipe = readJson(written[1]);

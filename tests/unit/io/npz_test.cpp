@@ -107,7 +107,7 @@ TEST(MareyNpz, AClipComesBackBitForBit) {
   clip.source.eulerOrders.assign(10, "ZXY");
   clip.source.eulerOrders[4] = "";
   clip.source.eulerOrders.back() = "";
-  const auto written = writeClip(clip, folder / "a.npz", {.recipe = {{"seed", 3}}});
+  const auto written = writeClip(clip, folder / "a.npz", {.recipe = {{"seed", 3}}}).files;
   EXPECT_EQ(written.size(), 1u);
   const Clip back = readClip(folder / "a.npz");
   EXPECT_EQ(back.name, clip.name);

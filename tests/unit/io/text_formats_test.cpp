@@ -71,7 +71,8 @@ TEST(Csv, LongHasARowPerFrameAndJoint) {
 TEST(Csv, WideHasTimeFirstAndARowPerFrame) {
   const test::TemporaryFolder folder;
   const auto written =
-      writeClip(twoJoints(), folder / "a.csv", {.format = "csv-wide", .recipe = {{"seed", 1}}});
+      writeClip(twoJoints(), folder / "a.csv", {.format = "csv-wide", .recipe = {{"seed", 1}}})
+          .files;
   const std::string text = readFile(folder / "a.csv");
   expectContains(
       text, "time,Hips_Xposition,Hips_Yposition,Hips_Zposition,\"Head, \"\"top\"\"_Xposition\"");

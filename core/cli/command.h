@@ -48,5 +48,6 @@ void addAnalyzeCommand(CLI::App& app, Context& context);
 void addReportCommand(CLI::App& app, Context& context);
 void addRenderCommand(CLI::App& app, Context& context);
 void addModelCommand(CLI::App& app, Context& context);
+void addBenchCommand(CLI::App& app, Context& context);
 
 }  // namespace marey::cli

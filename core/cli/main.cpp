@@ -27,6 +27,7 @@ void addCommands(CLI::App& app, Context& context) {
   addReportCommand(app, context);
   addRenderCommand(app, context);
   addModelCommand(app, context);
+  addBenchCommand(app, context);
 #endif
 }
 

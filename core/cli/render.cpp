@@ -89,14 +89,12 @@ render::Recipe recipeOf(const Context& context, const std::vector<fs::path>& fil
 }
 
 void checkKind(const RenderOptions& options) {
-  const std::string extension = fs::path(options.out).extension().string();
-  if (extension == ".png" || extension == ".mp4") {
-    if (extension == ".png" && options.follow)
-      throw UsageError("--follow: only a video (.mp4) has a moving camera");
-    return;
-  }
-  throw UsageError(
-      fmt::format("--out: expected a file ending in .mp4 or .png, found '{}'", options.out));
+  if (render::videoKind(options.out)) return;
+  if (fs::path(options.out).extension() != ".png")
+    throw UsageError(fmt::format(
+        "--out: expected a file ending in .mp4, .webm, .gif or .png, found '{}'", options.out));
+  if (options.follow)
+    throw UsageError("--follow: only a video or numbered pictures have a moving camera");
 }
 
 void runRender(const Context& context, const RenderOptions& options) {
@@ -112,8 +110,9 @@ void runRender(const Context& context, const RenderOptions& options) {
   std::vector<fs::path> all = naturalFiles;
   all.insert(all.end(), files.begin(), files.end());
   const render::Recipe recipe = recipeOf(context, all);
+  const bool still = !render::videoKind(options.out);
   int frames = 1;
-  if (fs::path(options.out).extension() == ".png") {
+  if (still) {
     render::writePng(options.out, render::renderScene(scene, size.width, size.height), recipe);
   } else {
     const render::VideoFormat format{
@@ -124,7 +123,7 @@ void runRender(const Context& context, const RenderOptions& options) {
                                      recipe, drawing);
   }
   progress.report(1.0);
-  const double fps = fs::path(options.out).extension() == ".png" ? 0.0 : options.fps;
+  const double fps = still ? 0.0 : options.fps;
   context.print({{"file", options.out}, {"frames", frames}, {"fps", fps}},
                 fmt::format("{}\n", options.out));
 }
@@ -133,18 +132,24 @@ void runRender(const Context& context, const RenderOptions& options) {
 
 void addRenderCommand(CLI::App& app, Context& context) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command =
-      addCommand(app, context, "render", "A video (.mp4) or one strobed picture (.png) of motions",
-                 "marey render samples/ --natural walk.bvh --out fan.png --strobe 0.5",
-                 [&context, options] { runRender(context, *options); });
+  CLI::App* command = addCommand(
+      app, context, "render",
+      "A video (.mp4, .webm, .gif, numbered .png) or one strobed picture (.png) of motions",
+      "marey render samples/ --natural walk.bvh --out fan.png --strobe 0.5",
+      [&context, options] { runRender(context, *options); });
   command->add_option("inputs", options->inputs, "motion files, folders or @LIST")->required();
   command->add_option("--natural", options->natural,
                       "motion to compare with: near-black, the others see-through over it");
-  command->add_option("--out", options->out, "file ending in .mp4 or .png")->required();
-  command->add_option("--fps", options->fps, "frames per second of a video")
+  command
+      ->add_option("--out", options->out,
+                   "file ending in .mp4, .webm, .gif or .png; .png with {frame:04} in its name: a "
+                   "picture per frame, numbered from 0")
+      ->required();
+  command->add_option("--fps", options->fps, "frames per second of a video, at most 50 in .gif")
       ->check(CLI::Range(1.0, 240.0))
       ->capture_default_str();
-  command->add_option("--size", options->size, "pixels, even for videos")->capture_default_str();
+  command->add_option("--size", options->size, "pixels, even for .mp4 and .webm")
+      ->capture_default_str();
   command->add_option("--camera", options->camera, "three-quarter, side or top")
       ->check(CLI::IsMember({"three-quarter", "side", "top"}))
       ->capture_default_str();

@@ -15,11 +15,7 @@ Vec3 turned(const Vec3& direction, double angle) {
   return Eigen::AngleAxisf(static_cast<float>(angle), Vec3::UnitY()) * direction;
 }
 
-struct Axes {
-  Vec3 right, up, forward;
-};
-
-Axes axesOf(const Vec3& travel, View view, double elevation) {
+ViewAxes axesOf(const Vec3& travel, View view, double elevation) {
   if (view == View::Top) return {travel, Vec3::UnitY().cross(travel), -Vec3::UnitY()};
   // The viewer stands to the side of the walk, turned so that it ends nearer than it starts.
   const Vec3 right = view == View::Side ? travel : turned(travel, 0.42);
@@ -61,7 +57,7 @@ void setClipping(Camera& camera, std::span<const Vec3> points) {
   camera.farM = depth.high + 3.0 * span + 20.0;
 }
 
-Camera fitPerspective(std::span<const Vec3> points, const Axes& axes, const Frame& frame) {
+Camera fitPerspective(std::span<const Vec3> points, const ViewAxes& axes, const Frame& frame) {
   Camera camera;
   camera.fovY = 0.42;
   const double scale = std::tan(camera.fovY / 2) / (0.5 * frame.height);
@@ -84,7 +80,7 @@ Camera fitPerspective(std::span<const Vec3> points, const Axes& axes, const Fram
   return camera;
 }
 
-Camera fitOrthographic(std::span<const Vec3> points, const Axes& axes, const Frame& frame) {
+Camera fitOrthographic(std::span<const Vec3> points, const ViewAxes& axes, const Frame& frame) {
   Bounds h, v, depth;
   for (const Vec3& p : points) {
     h.include(p.dot(axes.right));
@@ -139,14 +135,18 @@ Vec3 travelDirection(std::span<const Vec3> positions, const Vec3& fallback) {
   return along.dot(fallback) < 0.0F ? Vec3(-along) : along;
 }
 
-Camera fitCamera(std::span<const Vec3> points, const Vec3& travel, View view, bool orthographic,
-                 const Frame& frame, double elevation) {
+Camera fitCamera(std::span<const Vec3> points, const ViewAxes& axes, bool orthographic,
+                 const Frame& frame) {
   if (points.empty()) throw NumericError("a camera needs at least one point to look at");
-  const Axes axes = axesOf(travel, view, elevation);
   Camera camera =
       orthographic ? fitOrthographic(points, axes, frame) : fitPerspective(points, axes, frame);
   setClipping(camera, points);
   return camera;
+}
+
+Camera fitCamera(std::span<const Vec3> points, const Vec3& travel, View view, bool orthographic,
+                 const Frame& frame, double elevation) {
+  return fitCamera(points, axesOf(travel, view, elevation), orthographic, frame);
 }
 
 }  // namespace marey::render

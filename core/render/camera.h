@@ -43,6 +43,15 @@ struct Frame {
 /// still.
 Vec3 travelDirection(std::span<const Vec3> positions, const Vec3& fallback);
 
+/// Unit directions of the picture in the world.
+struct ViewAxes {
+  Vec3 right, up, forward;
+};
+/// The nearest camera along `axes` that sees all points inside the frame.
+/// Throws NumericError when there is no point.
+Camera fitCamera(std::span<const Vec3> points, const ViewAxes& axes, bool orthographic,
+                 const Frame& frame);
+
 /// The nearest camera of this view that sees all points inside the frame.
 /// Throws NumericError when there is no point.
 Camera fitCamera(std::span<const Vec3> points, const Vec3& travel, View view, bool orthographic,

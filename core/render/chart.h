@@ -4,11 +4,13 @@
 // window. Output is deterministic: equal charts give equal bytes.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "render/chart_theme.h"
 #include "render/colours.h"
 #include "render/image.h"
 #include "render/recipe.h"
@@ -33,6 +35,15 @@ enum class SeriesKind {
   Dots,            ///< y over x; low..high, where given, is an error bar along `errorAxis`
   HorizontalRule,  ///< a line across the chart at y[0], labelled with its name
   VerticalRule,    ///< the same at x[0]
+  Cloud,           ///< the lines of `cloud` over x, laid over each other as one picture
+};
+
+/// Many lines over common places: rows x (places of x), row by row; NaN breaks a line.
+struct CloudLines {
+  std::vector<float> y;
+  double low = 0.0, high = 1.0;  ///< of the finite values
+
+  explicit CloudLines(std::vector<float> rows);
 };
 
 struct Series {
@@ -46,6 +57,8 @@ struct Series {
   bool dashed = false;
   bool inLegend = true;
   char errorAxis = 'y';
+  std::shared_ptr<const CloudLines> cloud = nullptr;  ///< of kind Cloud, whose `opacity` is that of
+                                                      ///< one line and whose x rises
 };
 
 enum class LegendPlace {
@@ -67,6 +80,7 @@ struct ChartGrid {
   std::vector<Chart> charts = {};
   int columns = 1;
   bool shareX = false, shareY = false;
+  ChartTheme theme = {};
 };
 
 /// CSS pixels (1/96 inch); text is 12 px = 9 pt or larger.

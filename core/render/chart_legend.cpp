@@ -20,6 +20,7 @@ void drawSwatch(Drawing& drawing, const Series& look, Point at) {
   const double middle = at.y - 4.2;
   switch (look.kind) {
     case SeriesKind::Line:
+    case SeriesKind::Cloud:  // one line of many is too faint for a swatch
       drawing.line({at.x, middle}, {at.x + swatchWidth, middle}, look.colour,
                    std::max(2.0, look.width), look.dashed);
       break;

@@ -38,7 +38,7 @@ void drawOn(cairo_surface_t* surface, const ChartGrid& grid, const ChartSize& si
 /// cairo numbers its groups through the life of a process; ids here depend on the figure alone.
 std::string withOwnIds(const std::string& svg, const std::string& prefix) {
   static const std::regex group("id=\"surface[0-9]+\"");
-  static const std::regex id("(id=\"|\"#|url\\(#)([A-Za-z]+[0-9]+(-[0-9]+)?)");
+  static const std::regex id("(id=\"|\"#|url\\(#)([A-Za-z]+-?[0-9]+(-[0-9]+)?)");
   return std::regex_replace(std::regex_replace(svg, group, "id=\"page0\""), id,
                             "$1" + prefix + "-$2");
 }
@@ -68,9 +68,10 @@ std::string textElements(const std::vector<TextRecord>& records) {
     if (record.text.empty()) continue;
     if (record.style.halo) {
       elements +=
-          textElement(record,
-                      "fill=\"none\" stroke=\"#ffffff\" stroke-opacity=\"0.85\" "
-                      "stroke-width=\"3.5\" stroke-linejoin=\"round\" aria-hidden=\"true\"");
+          textElement(record, fmt::format("fill=\"none\" stroke=\"{}\" stroke-opacity=\"0.85\" "
+                                          "stroke-width=\"3.5\" stroke-linejoin=\"round\" "
+                                          "aria-hidden=\"true\"",
+                                          hexOf(record.halo)));
     }
     elements += textElement(record, fmt::format("fill=\"{}\"", hexOf(record.style.colour)));
   }

@@ -42,6 +42,30 @@ double legendHeight(Drawing& drawing, const std::vector<LegendItem>& items, doub
 void drawDirectLabels(Drawing& drawing, const Chart& chart, const Mapping& map);
 double directLabelWidth(Drawing& drawing, const Chart& chart);
 
+TextStyle tickStyle();
+Ticks ticksOf(const Axis& axis, const Range& range, double pixels, double pixelsPerTick);
+
+/// What a cell shows besides its plot.
+struct CellLook {
+  bool xLabels = true, yLabels = true;
+};
+
+struct PlacedCell {
+  Box cell;
+  Mapping map;
+  CellLook look;
+};
+
+/// Where everything of a grid goes.
+struct PlacedGrid {
+  std::vector<LegendItem> legend;  ///< empty: none is drawn
+  Box legendBox;
+  std::vector<PlacedCell> cells;  ///< one per chart
+};
+PlacedGrid placed(Drawing& drawing, const ChartGrid& grid, const ChartSize& size);
+
+/// Many lines as one picture (chart_cloud.cpp).
+void drawCloud(Drawing& drawing, const Series& series, const Mapping& map);
 /// One series inside the plot.
 void drawSeries(Drawing& drawing, const Series& series, const Mapping& map);
 /// The whole grid on a page of this size.

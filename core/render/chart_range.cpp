@@ -38,6 +38,10 @@ void includeSeries(Range& range, const Series& series, char axis) {
     include(range, bars ? v - series.width / 2 : v);
     include(range, bars ? v + series.width / 2 : v);
   }
+  if (axis == 'y' && series.cloud) {
+    include(range, series.cloud->low);
+    include(range, series.cloud->high);
+  }
   if (extentAlong(series, axis)) {
     include(range, series.low);
     include(range, series.high);
@@ -59,6 +63,13 @@ void checkChart(const Chart& chart) {
     const Place place{.path = "chart '" + chart.title + "'", .item = "series '" + s.name + "'"};
     const bool rule = s.kind == SeriesKind::HorizontalRule || s.kind == SeriesKind::VerticalRule;
     const size_t extent = s.low.size();
+    if (s.kind == SeriesKind::Cloud) {
+      const size_t values = s.cloud ? s.cloud->y.size() : 0;
+      if (s.x.empty() ? values != 0 : values % s.x.size() != 0)
+        throwInput(place, "rows of as many values as x", "{} values, {} places", values,
+                   s.x.size());
+      continue;
+    }
     const bool needsExtent = s.kind == SeriesKind::Band || s.kind == SeriesKind::Intervals;
     const size_t points = s.kind == SeriesKind::Intervals ? s.y.size() : s.x.size();
     if (rule && s.x.size() + s.y.size() != 1)

@@ -18,7 +18,8 @@ Drawing::Drawing(cairo_t* context, std::vector<TextRecord>* texts)
   cairo_set_line_join(m_context, CAIRO_LINE_JOIN_ROUND);
 }
 
-void Drawing::setColour(const Colour& c) {
+void Drawing::setColour(const Colour& colour) {
+  const Colour c = themed(colour, m_theme);
   cairo_set_source_rgba(m_context, c.r, c.g, c.b, c.a);
 }
 
@@ -95,7 +96,9 @@ double Drawing::textWidth(const std::string& text, const TextStyle& style) {
 
 void Drawing::text(const std::string& text, Point at, const TextStyle& style) {
   if (m_texts != nullptr) {
-    m_texts->push_back({text, at, style});
+    TextStyle drawn = style;
+    drawn.colour = themed(style.colour, m_theme);
+    m_texts->push_back({text, at, drawn, themed({1, 1, 1, 1}, m_theme)});
     return;
   }
   const double width = textWidth(text, style);

@@ -6,6 +6,7 @@
 
 #include <cairo.h>
 
+#include "render/chart_theme.h"
 #include "render/colours.h"
 #include "render/image.h"
 
@@ -29,7 +30,7 @@ struct TextStyle {
   Align align = Align::Left;
   bool bold = false;
   double turn = 0.0;  ///< radians, clockwise on the page
-  bool halo = false;  ///< a white rim, for text over lines
+  bool halo = false;  ///< a rim in the colour of the page, for text over lines
 };
 
 /// A text that was left to the caller: cairo's SVG surface turns text into outlines, which nobody
@@ -37,7 +38,8 @@ struct TextStyle {
 struct TextRecord {
   std::string text;
   Point at;
-  TextStyle style;
+  TextStyle style;  ///< colour as drawn: the theme has been applied
+  Colour halo = {1, 1, 1, 1};
 };
 
 /// Draws on a cairo context that someone else owns.
@@ -45,6 +47,10 @@ class Drawing {
  public:
   /// With `texts`, texts are collected there (in order, in page coordinates) and not drawn.
   explicit Drawing(cairo_t* context, std::vector<TextRecord>* texts = nullptr);
+
+  /// Colours are given as for white paper; a theme replaces them as they are drawn.
+  void setTheme(const ChartTheme& theme) { m_theme = theme; }
+  const ChartTheme& theme() const { return m_theme; }
 
   void fillBox(const Box& box, const Colour& colour);
   void strokeBox(const Box& box, const Colour& colour, double width);
@@ -68,6 +74,7 @@ class Drawing {
 
   cairo_t* m_context;
   std::vector<TextRecord>* m_texts;
+  ChartTheme m_theme;
 };
 
 /// A cairo image surface to draw on, and its pixels as an Image (or an Image to draw over).

@@ -106,7 +106,19 @@ struct OffscreenWindow::Internals {
   SurfacelessContext context;
   vtkSmartPointer<vtkGenericOpenGLRenderWindow> window;
   vtkSmartPointer<vtkRenderer> renderer;  ///< its textures and buffers live in the context
+
+  void draw(vtkRenderer* next, int width, int height);
 };
+
+void OffscreenWindow::Internals::draw(vtkRenderer* next, int width, int height) {
+  window->SetSize(width, height);
+  if (renderer != next) {
+    if (renderer) window->RemoveRenderer(renderer);
+    window->AddRenderer(next);
+    renderer = next;
+  }
+  window->Render();
+}
 
 OffscreenWindow::OffscreenWindow() : m_internals(std::make_unique<Internals>()) {
   const SurfacelessContext::Current current(m_internals->context);
@@ -131,13 +143,7 @@ OffscreenWindow::~OffscreenWindow() {
 Rendered OffscreenWindow::render(vtkRenderer* renderer, int width, int height) {
   const SurfacelessContext::Current current(m_internals->context);
   vtkGenericOpenGLRenderWindow* window = m_internals->window;
-  window->SetSize(width, height);
-  if (m_internals->renderer != renderer) {
-    if (m_internals->renderer) window->RemoveRenderer(m_internals->renderer);
-    window->AddRenderer(renderer);
-    m_internals->renderer = renderer;
-  }
-  window->Render();
+  m_internals->draw(renderer, width, height);
   Rendered result{width, height, {}, {}};
   auto colours = vtkSmartPointer<vtkUnsignedCharArray>::New();
   window->GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, colours);
@@ -147,6 +153,12 @@ Rendered OffscreenWindow::render(vtkRenderer* renderer, int width, int height) {
   result.rgba.assign(colours->GetPointer(0), colours->GetPointer(0) + 4 * pixels);
   result.depth.assign(depths->GetPointer(0), depths->GetPointer(0) + pixels);
   return result;
+}
+
+void OffscreenWindow::draw(vtkRenderer* renderer, int width, int height) {
+  const SurfacelessContext::Current current(m_internals->context);
+  m_internals->draw(renderer, width, height);
+  m_internals->window->WaitForCompletion();
 }
 
 }  // namespace marey::render

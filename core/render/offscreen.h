@@ -29,6 +29,8 @@ class OffscreenWindow {
   /// Draws a renderer at this size, without anti-aliasing. The renderer is kept, with what it has
   /// on the graphics side, until another one or the end of the window.
   Rendered render(vtkRenderer* renderer, int width, int height);
+  /// The same without reading the picture back; returns once it is really drawn.
+  void draw(vtkRenderer* renderer, int width, int height);
 
  private:
   struct Internals;

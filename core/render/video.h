@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/job.h"
@@ -10,20 +11,35 @@
 
 namespace marey::render {
 
-/// H.264 in MP4, yuv420p (BT.709), quality and key frames fixed, so that videos of one study are
-/// encoded alike. The same frames give the same bytes.
+enum class VideoKind {
+  Mp4,       ///< H.264, yuv420p (BT.709)
+  WebM,      ///< VP9, yuv420p (BT.709)
+  Gif,       ///< one palette of 255 colours for all frames, endless; times in 1/100 s
+  PngFrames  ///< a picture per frame
+};
+
+/// By the extension: .mp4, .webm, .gif, or .png with {frame} or {frame:04} in the file's name,
+/// which becomes the number of the frame from 0 with at least so many digits. Nothing for other
+/// names. Throws UsageError for a .png with other or several braces.
+std::optional<VideoKind> videoKind(const std::filesystem::path& path);
+
+/// Quality and key frames are fixed, so that videos of one study are encoded alike. The same
+/// frames give the same bytes.
 struct VideoFormat {
-  int width = 1280, height = 720;  ///< even
-  double fps = 30.0;
-  int quality = 18;        ///< constant rate factor: 0 lossless, 18 no visible loss, 51 worst
+  int width = 1280, height = 720;  ///< even in MP4 and WebM
+  double fps = 30.0;               ///< at most 50 in GIF
+  int quality = 18;        ///< constant rate factor of H.264: 0 lossless, 18 no visible loss,
+                           ///< 51 worst; scaled for VP9, without effect on GIF and PNG
   int keyFrameEvery = 30;  ///< frames
 };
 
-/// Collects frames; the file appears, whole, with `finish`.
+/// Collects frames; the file (or all pictures of frames) appears, whole, with `finish`.
 class VideoWriter {
  public:
-  /// The recipe becomes the file's comment. Throws InputError for odd or empty sizes, a rate that
-  /// is not positive or a quality outside 0..51; Error where no H.264 encoder is installed.
+  /// The kind is that of the name. The recipe becomes the file's comment, or text chunk "marey" of
+  /// every PNG, there with the frame's number. Throws UsageError for a name of no kind; InputError
+  /// for odd or empty sizes, a rate outside the kind's or a quality outside 0..51; Error where the
+  /// encoder is not installed.
   VideoWriter(std::filesystem::path path, const VideoFormat& format, const Recipe& recipe = {});
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
@@ -31,7 +47,8 @@ class VideoWriter {
 
   /// Throws InputError when the size is not that of the format.
   void add(const Image& frame);
-  /// Throws FileError, or Error for a video without frames.
+  /// Throws FileError; Error for a video without frames; InputError where a numbered picture of a
+  /// longer video follows the last frame.
   void finish();
 
  private:

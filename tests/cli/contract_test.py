@@ -1,13 +1,16 @@
 """Every command: its help, its --json object, its exit status, on the walker's own clips."""
 import json
+import math
 import re
 import subprocess
 from xml.etree import ElementTree
 
-from support import Case, SharedModelCase, listing, main, marey, need_tools
+from support import (Case, SharedModelCase, gltf_floats, listing, main, marey, need_tools,
+                     read_gltf, without_rotations)
 
 COMMANDS = ["demo", "doctor", "convert", "prepare", "train", "sample", "score", "analyze",
-            "report", "render", "model info", "model import", "model export", "model check"]
+            "report", "render", "model info", "model import", "model export", "model check",
+            "bench render"]
 SHARED_OPTIONS = ["--json", "--quiet", "--seed", "--threads"]
 
 
@@ -45,6 +48,9 @@ class Usage(Case):
             ["sample", "m.marey", "--path", "preset:still", "--out", "s", "-n", "many"],
             ["score", "m.marey"], ["analyze"], ["analyze", "a.bvh", "--fps", "-3"],
             ["report", "e.json"], ["render", "a.bvh", "--out", "film.avi"],
+            ["render", "a.bvh", "--out", "a{frame:x}.png"],
+            ["render", "a.bvh", "--out", "{frame}/a.png"],
+            ["render", "a.bvh", "--out", "a.png", "--follow"],
             ["render", "a.bvh", "--out", "a.png", "--size", "9"],
             ["model"], ["model", "info"], ["model", "check", "m.marey"],
             ["model", "import", "m.pkg", "--out", "m.marey"],
@@ -115,6 +121,64 @@ class MotionCommands(SharedModelCase):
                 for a, b in zip(source[-1].split()[:3], rows[-1].split()[:3]):
                     self.assertAlmostEqual(float(a), float(b), places=2)
 
+    def test_convert_to_gltf_moves_the_joints_as_the_clip_does(self):
+        rows = self.csv_positions(self.clip)
+        for extension in ("gltf", "glb"):
+            with self.subTest(extension=extension):
+                out = self.dir / f"a.{extension}"
+                result = self.run_json("convert", self.clip, "--out", out)
+                self.assertEqual(result, {"written": [str(out)]})  # rotations: no fit
+                scene, buffer = read_gltf(out)
+                self.assertIn("convert", scene["asset"]["extras"]["recipe"]["command"])
+                animation, = scene["animations"]
+                channel, = [c for c in animation["channels"] if c["target"]["path"] ==
+                            "translation"]
+                sampler = animation["samplers"][channel["sampler"]]
+                times = gltf_floats(scene, buffer, sampler["input"])
+                places = gltf_floats(scene, buffer, sampler["output"])
+                self.assertEqual(len(times), 240)
+                for t in (0, 100, 239):
+                    self.assertAlmostEqual(times[t], t / 60, places=5)
+                    for a, b in zip(places[3 * t:3 * t + 3], rows[t, "Hips"]):
+                        self.assertAlmostEqual(a, b, places=4)
+
+    def test_positions_alone_are_fitted_and_the_residual_is_stated(self):
+        wide, lifted = self.csv_positions(self.clip), 0.1
+        bare = self.dir / "bare.npz"
+        self.run_json("convert", self.clip, "--out", bare)
+        without_rotations(bare, lifted)
+        for extension in ("bvh", "glb"):
+            with self.subTest(extension=extension):
+                out = self.dir / f"fit.{extension}"
+                result = self.run_json("convert", bare, "--out", out)
+                # The head was lifted off its bone by 10 cm in every frame.
+                residual = result["fit_residual_cm"]
+                self.assertEqual(len(residual), 21)
+                self.assertEqual(max(residual, key=residual.get), "Head")
+                self.assertGreater(residual["Head"], 1)
+                self.assertLess(result["fit_residual_max_cm"], 100 * lifted)
+                self.assertGreaterEqual(result["fit_residual_max_cm"], residual["Head"])
+                if extension == "glb":
+                    fit = read_gltf(out)[0]["asset"]["extras"]["recipe"]["fit"]
+                else:
+                    fit = json.loads((self.dir / "fit.bvh.recipe.json").read_text())["fit"]
+                self.assertAlmostEqual(fit["fit_residual_cm"]["Head"], residual["Head"], places=9)
+                self.assertEqual(fit["fit_residual_max_cm"], result["fit_residual_max_cm"])
+        # What is written is as far from the positions as stated.
+        fitted = self.csv_positions(self.dir / "fit.bvh")
+        head = [math.dist(fitted[t, "Head"], (x, y + lifted, z))
+                for t in range(240) for x, y, z in [wide[t, "Head"]]]
+        self.assertAlmostEqual(100 * math.sqrt(sum(d * d for d in head) / 240), residual["Head"],
+                               places=3)
+        self.assertAlmostEqual(100 * max(head), result["fit_residual_max_cm"], places=3)
+
+    def csv_positions(self, clip):
+        """{(frame, joint): (x, y, z)} in metres."""
+        out = self.dir / "positions.csv"
+        self.run_json("convert", clip, "--out", out)
+        rows = [line.split(",") for line in out.read_text().splitlines()[1:]]
+        return {(int(r[0]), r[2]): tuple(map(float, r[3:])) for r in rows}
+
     def test_prepare_counts_windows_and_dimensions(self):
         out = self.dir / "d.marey"
         held = self.clips / "walker_0001.bvh"
@@ -153,6 +217,41 @@ class MotionCommands(SharedModelCase):
         self.assertEqual((result["frames"], result["fps"]), (20, 5.0))
         self.assertEqual(video.read_bytes()[4:8], b"ftyp")
 
+    def test_every_kind_of_video_has_the_frames_rate_and_size_it_was_asked_for(self):
+        need_tools("ffprobe")
+        for name, codec in (("a.mp4", "h264"), ("a.webm", "vp9"), ("a.gif", "gif"),
+                            ("f{frame:03}.png", "png")):
+            with self.subTest(name=name):
+                out = self.dir / name
+                options = ("--size", "160x120", "--fps", "5", "--title", "walk")
+                result = self.run_json("render", self.clip, "--out", out, *options)
+                self.assertEqual(result, {"file": str(out), "frames": 20, "fps": 5.0})
+                probe = ["ffprobe", "-v", "error", "-count_frames", "-show_streams",
+                         "-show_format", "-of", "json"]
+                if codec == "png":
+                    probe += ["-framerate", "5", "-start_number", "0"]
+                    out = self.dir / "f%03d.png"
+                found = json.loads(subprocess.run([*probe, out], check=True, capture_output=True,
+                                                  text=True).stdout)
+                stream, = found["streams"]
+                self.assertEqual((stream["codec_name"], stream["width"], stream["height"],
+                                  stream["avg_frame_rate"], stream["nb_read_frames"]),
+                                 (codec, 160, 120, "5/1", "20"))
+                if codec != "png":
+                    tags = {k.lower(): v for k, v in found["format"]["tags"].items()}
+                    recipe = json.loads(tags["comment"])
+                    self.assertIn(str(self.clip), recipe["inputs"])
+                    first = out.read_bytes()
+                    self.run_json("render", self.clip, "--out", self.dir / name, *options)
+                    self.assertEqual(first, out.read_bytes())
+
+    def test_a_shorter_video_is_not_mixed_with_the_pictures_of_a_longer_one(self):
+        out = self.dir / "{frame}.png"
+        self.run_json("render", self.clip, "--out", out, "--size", "64x64", "--fps", "2")
+        self.assertEqual(len(listing(self.dir)), 8)
+        self.assert_refused(["render", self.clip, "--out", out, "--size", "64x64", "--fps", "1"],
+                            "{frame}.png", "4.png", "longer")
+
     def test_lists_name_files_relative_to_their_folder(self):
         (self.dir / "clips").mkdir()
         (self.dir / "clips" / "a.bvh").write_bytes(self.clip.read_bytes())
@@ -185,6 +284,20 @@ class ModelCommands(SharedModelCase):
         recipe = (out / "sample_000.bvh.recipe.json").read_text()
         for word in ("model_hash", '"seed"', "temperature", '"marey"'):
             self.assertIn(word, recipe)
+
+    def test_sample_states_how_far_rotations_are_from_the_sampled_positions(self):
+        words = ("sample", self.model, "--path", "preset:turn-left", "-n", "2", "--seconds", "1")
+        exact = self.run_json(*words, "--format", "npz", "--out", self.dir / "npz")
+        self.assertNotIn("fit_residual_cm", exact)
+        for extension in ("bvh", "glb"):
+            result = self.run_json(*words, "--format", extension, "--out", self.dir / extension)
+            self.assertEqual(len(result["fit_residual_cm"]), 21)
+            self.assertGreaterEqual(result["fit_residual_max_cm"],
+                                    max(result["fit_residual_cm"].values()))
+        scene, _ = read_gltf(self.dir / "glb" / "sample_001.glb")
+        recipe = scene["asset"]["extras"]["recipe"]
+        self.assertEqual((recipe["seed"], recipe["sample"]), (1, "sample_001"))
+        self.assertIn("fit_residual_cm", recipe["fit"])
 
     def test_sample_follows_a_clip(self):
         out = self.dir / "samples"

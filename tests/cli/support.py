@@ -3,6 +3,7 @@
 The environment names the program (MAREY_BINARY) and the folder of the motion data that may lie
 beside the checkout (MAREY_SHARED_DIR).
 """
+import base64
 import json
 import os
 import pathlib
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 
 BINARY = os.environ.get("MAREY_BINARY", "")
 SHARED = pathlib.Path(os.environ.get("MAREY_SHARED_DIR", "../shared"))
@@ -82,6 +84,46 @@ def write_tensors(path, metadata, tensors):
     text = json.dumps(header).encode()
     text += b" " * (-len(text) % 8)
     pathlib.Path(path).write_bytes(struct.pack("<Q", len(text)) + text + body)
+
+
+def read_gltf(path):
+    """(scene description, its one buffer) of a .gltf or .glb file."""
+    blob = pathlib.Path(path).read_bytes()
+    if blob[:4] != b"glTF":
+        scene = json.loads(blob)
+        return scene, base64.b64decode(scene["buffers"][0]["uri"].split(",", 1)[1])
+    size = struct.unpack("<I", blob[12:16])[0]
+    return json.loads(blob[20:20 + size]), blob[28 + size:]
+
+
+def gltf_floats(scene, buffer, index):
+    """The numbers of one accessor of floats."""
+    accessor = scene["accessors"][index]
+    view = scene["bufferViews"][accessor["bufferView"]]
+    count = accessor["count"] * {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}[accessor["type"]]
+    return struct.unpack_from(f"<{count}f", buffer, view.get("byteOffset", 0))
+
+
+def without_rotations(path, lift):
+    """Makes a clip's NPZ one of positions only, whose joint 'Head' is higher by `lift` metres."""
+    with zipfile.ZipFile(path) as archive:
+        arrays = {name: archive.read(name) for name in archive.namelist()}
+    del arrays["rotations.npy"], arrays["translations.npy"]
+    names = npy_body(arrays["joint_names.npy"])[1].decode().split("\n")
+    header, body = npy_body(arrays["positions.npy"])
+    values = list(struct.unpack(f"<{len(body) // 4}f", body))
+    at = 3 * names.index("Head") + 1
+    values[at::3 * len(names)] = [v + lift for v in values[at::3 * len(names)]]
+    arrays["positions.npy"] = header + struct.pack(f"<{len(values)}f", *values)
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in arrays.items():
+            archive.writestr(name, content)
+
+
+def npy_body(content):
+    """(header, data) of a NumPy array file, version 1."""
+    size = 10 + struct.unpack("<H", content[8:10])[0]
+    return content[:size], content[size:]
 
 
 class Case(unittest.TestCase):

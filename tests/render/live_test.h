@@ -1,0 +1,21 @@
+// What the tests of moving scenes share.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "render/live_scene.h"
+
+namespace marey::render {
+
+inline constexpr Colour red{0.9, 0.1, 0.1, 1.0}, blue{0.1, 0.2, 0.9, 1.0};
+
+inline LiveMotion motionOf(Clip clip, const Colour& colour, double opacity = 1.0) {
+  LiveMotion motion;
+  motion.clip = std::make_shared<const Clip>(std::move(clip));
+  motion.colour = colour;
+  motion.opacity = opacity;
+  return motion;
+}
+
+}  // namespace marey::render

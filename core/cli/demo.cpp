@@ -3,7 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "cli/command.h"
-#include "cli/demo_resources.h"
+#include "experiment/demo_resources.h"
 #include "cli/experiment_command.h"
 #include "io/clip_io.h"
 #include "motion/walker.h"

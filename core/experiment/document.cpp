@@ -30,10 +30,20 @@ ExperimentPath pathFromJson(const Json& value, const std::string& origin,
   JsonReader reader(value, origin, prefix);
   ExperimentPath out;
   out.name = reader.required<std::string>("name");
-  out.path = reader.required<std::string>("path");
-  out.seconds = reader.optional("seconds", out.seconds);
+  if (reader.has("waypoints")) {
+    out.wayPoints = wayPointsFromJson({{"waypoints", reader.raw("waypoints")}}, origin, prefix);
+    out.seconds = reader.optional("seconds", 0.0);
+    if (reader.has("path"))
+      throw InputError(reader.place("path"), "either a path or way-points", "both");
+    if (out.wayPoints.size() < 2)
+      throwInput(reader.place("waypoints"), "at least two", "{}", out.wayPoints.size());
+  } else {
+    out.path = reader.required<std::string>("path");
+    out.seconds = reader.optional("seconds", out.seconds);
+  }
   reader.finish();
-  requireAtLeast(reader, "seconds", out.seconds, 0.2);
+  if (out.wayPoints.empty() || out.seconds != 0.0)
+    requireAtLeast(reader, "seconds", out.seconds, 0.2);
   return out;
 }
 
@@ -90,8 +100,12 @@ Json toJson(const Experiment& e) {
   Json systems = Json::array(), paths = Json::array();
   for (const auto& s : e.systems)
     systems.push_back({{"name", s.name}, {"model", s.model}, {"temperature", s.temperature}});
-  for (const auto& p : e.paths)
-    paths.push_back({{"name", p.name}, {"path", p.path}, {"seconds", p.seconds}});
+  for (const auto& p : e.paths) {
+    Json one = p.wayPoints.empty() ? Json{{"path", p.path}} : toJson(p.wayPoints);
+    one["name"] = p.name;
+    one["seconds"] = p.seconds;
+    paths.push_back(one);
+  }
   return {{"title", e.title},
           {"notes", e.notes},
           {"natural", e.natural},
@@ -103,6 +117,10 @@ Json toJson(const Experiment& e) {
           {"fps", e.fps},
           {"feet", e.feet},
           {"tolerance_step_cm_s", e.toleranceStepCmS}};
+}
+
+void writeExperiment(const std::filesystem::path& path, const Experiment& experiment) {
+  writeJson(path, toJson(experiment));
 }
 
 std::string experimentHash(const Experiment& experiment) {

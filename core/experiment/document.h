@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "motion/path.h"
 
 namespace marey {
 
@@ -15,12 +16,15 @@ struct ExperimentSystem {
   std::string name;   ///< shown in figures and tables
   std::string model;  ///< model file
   double temperature = 1.0;
+  bool operator==(const ExperimentSystem&) const = default;
 };
 
 struct ExperimentPath {
   std::string name;
-  std::string path;  ///< preset:NAME, clip:FILE or a path file
-  double seconds = 10.0;
+  std::string path;  ///< preset:NAME, clip:FILE or a path file; empty where way-points are given
+  std::vector<WayPoint> wayPoints = {};  ///< a path drawn in the document itself
+  double seconds = 10.0;                 ///< 0, for way-points only: as long as the path takes
+  bool operator==(const ExperimentPath&) const = default;
 };
 
 struct Experiment {
@@ -37,12 +41,15 @@ struct Experiment {
   std::string feet;  ///< joint names; empty: found by name
   double toleranceStepCmS = 1.0;
   std::filesystem::path folder;  ///< of the document: relative names start there (not stored)
+  bool operator==(const Experiment&) const = default;
 };
 
 /// Strict: unknown keys, wrong types and empty lists throw InputError naming the key.
 Experiment experimentFromJson(const Json& value, const std::string& origin);
 Experiment readExperiment(const std::filesystem::path& path);
 Json toJson(const Experiment& experiment);
+/// Written atomically. Throws FileError.
+void writeExperiment(const std::filesystem::path& path, const Experiment& experiment);
 std::string experimentHash(const Experiment& experiment);
 
 }  // namespace marey

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "experiment/path_choice.h"
 #include "model/sampler.h"
 #include "stats/footsteps.h"
 
@@ -78,18 +77,20 @@ void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& ou
                  Progress& progress) {
   for (size_t i = 0; i < e.paths.size(); ++i) {
     const ExperimentPath& path = e.paths[i];
-    SampleRequest request =
-        requestFor(model, {.path = path.path, .seconds = path.seconds, .folder = e.folder});
-    request.samples = e.samples;
-    request.seed = e.seed;
-    request.temperature = out.temperature;
     Progress part = progress.part(static_cast<double>(i) / static_cast<double>(e.paths.size()),
                                   static_cast<double>(i + 1) / static_cast<double>(e.paths.size()));
+    SampleRecipe recipe{.system = {out.name, {}, out.temperature},
+                        .path = path,
+                        .samples = e.samples,
+                        .seed = e.seed,
+                        .fps = e.fps,
+                        .folder = e.folder};
+    SampleSet set = drawSampleSet(model, recipe, part);
     PathSamples& samples = out.paths[path.name];
-    samples.wanted = request.path;
-    for (const FeatureSequence& sequence : sampleSequences(model, request, part)) {
-      samples.scores.push_back(scoreSequence(model, sequence));
-      samples.clips.push_back(std::make_shared<const Clip>(sampledClip(model, sequence)));
+    samples.wanted = std::move(set.wanted);
+    for (SampledMotion& motion : set.motions) {
+      samples.scores.push_back(std::move(motion.score));
+      samples.clips.push_back(std::move(motion.clip));
     }
   }
 }

@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "base/job.h"
-#include "experiment/document.h"
+#include "experiment/sample_set.h"
 #include "model/motion_model.h"
 #include "model/scorer.h"
 
 namespace marey {
-
-using ClipPtr = std::shared_ptr<const Clip>;
 
 /// Motions of one system along one path.
 struct PathSamples {

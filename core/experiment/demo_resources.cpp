@@ -1,4 +1,4 @@
-#include "cli/demo_resources.h"
+#include "experiment/demo_resources.h"
 
 // The assembler copies the files into the program: no generated source of many megabytes.
 #define MAREY_EMBED(symbol, file)         \
@@ -15,7 +15,7 @@
 MAREY_EMBED(marey_demo_model, MAREY_DEMO_FOLDER "/demo.marey")
 MAREY_EMBED(marey_demo_experiment, MAREY_DEMO_FOLDER "/experiment.json")
 
-namespace marey::cli {
+namespace marey {
 
 std::string_view demoModel() {
   return {marey_demo_model_begin, marey_demo_model_end};
@@ -24,4 +24,4 @@ std::string_view demoExperiment() {
   return {marey_demo_experiment_begin, marey_demo_experiment_end};
 }
 
-}  // namespace marey::cli
+}  // namespace marey

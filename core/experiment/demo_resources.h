@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace marey::cli {
+namespace marey {
 
 std::string_view demoModel();
 std::string_view demoExperiment();
 
-}  // namespace marey::cli
+}  // namespace marey

@@ -1,0 +1,99 @@
+#include "experiment/edits.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace marey {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename Items>
+bool isTaken(const Items& items, const std::string& name) {
+  return std::any_of(items.begin(), items.end(), [&](const auto& i) { return i.name == name; });
+}
+
+template <typename Items>
+std::string freeName(const Items& items, const std::string& wanted) {
+  std::string name = wanted;
+  for (int n = 2; isTaken(items, name); ++n) name = fmt::format("{} {}", wanted, n);
+  return name;
+}
+
+template <typename Items>
+void rename(Items& items, size_t index, const std::string& name, const char* kind) {
+  if (items.at(index).name == name) return;
+  if (name.empty()) throw InputError({.path = kind}, "a name", "an empty one");
+  if (isTaken(items, name))
+    throw InputError({.path = kind}, "a name that is not in use", "'" + name + "'");
+  items[index].name = name;
+}
+
+bool isFile(const std::string& source) {
+  return !source.starts_with("walker:") && !source.starts_with("preset:") && !source.empty();
+}
+
+/// `source` may have a mark in front (@LIST, clip:FILE).
+std::string moved(const std::string& source, const fs::path& from, const fs::path& to) {
+  if (!isFile(source)) return source;
+  const size_t mark = source.starts_with("@") ? 1 : source.starts_with("clip:") ? 5 : 0;
+  const fs::path file = source.substr(mark);
+  if (file.is_absolute()) return source;
+  const fs::path whole = fs::absolute(from / file).lexically_normal();
+  const fs::path near = whole.lexically_relative(fs::absolute(to).lexically_normal());
+  // A way up and down again is harder to read and no more lasting than a whole one.
+  const bool below = !near.empty() && *near.begin() != "..";
+  return source.substr(0, mark) + (below ? near : whole).string();
+}
+
+}  // namespace
+
+std::string freeSystemName(const Experiment& experiment, const std::string& wanted) {
+  return freeName(experiment.systems, wanted);
+}
+
+std::string freePathName(const Experiment& experiment, const std::string& wanted) {
+  return freeName(experiment.paths, wanted);
+}
+
+size_t addSystem(Experiment& experiment, const std::string& model, const std::string& name) {
+  experiment.systems.push_back({freeSystemName(experiment, name), model, 1.0});
+  return experiment.systems.size() - 1;
+}
+
+size_t addPath(Experiment& experiment, ExperimentPath path) {
+  path.name = freePathName(experiment, path.name);
+  experiment.paths.push_back(std::move(path));
+  return experiment.paths.size() - 1;
+}
+
+size_t addNatural(Experiment& experiment, const std::vector<std::string>& sources) {
+  size_t added = 0;
+  for (const std::string& source : sources) {
+    auto& all = experiment.natural;
+    if (std::find(all.begin(), all.end(), source) != all.end()) continue;
+    all.push_back(source);
+    ++added;
+  }
+  return added;
+}
+
+void renameSystem(Experiment& experiment, size_t index, const std::string& name) {
+  rename(experiment.systems, index, name, "system");
+}
+
+void renamePath(Experiment& experiment, size_t index, const std::string& name) {
+  rename(experiment.paths, index, name, "path");
+}
+
+void moveToFolder(Experiment& experiment, const fs::path& folder) {
+  const fs::path from = experiment.folder;
+  for (std::string& source : experiment.natural) source = moved(source, from, folder);
+  for (ExperimentSystem& system : experiment.systems)
+    system.model = moved(system.model, from, folder);
+  for (ExperimentPath& path : experiment.paths) path.path = moved(path.path, from, folder);
+  experiment.folder = folder;
+}
+
+}  // namespace marey

@@ -1,0 +1,28 @@
+// Edits of the document: free functions that change a plain struct. Whoever keeps a history
+// commits the result.
+#pragma once
+
+#include <string>
+
+#include "experiment/document.h"
+
+namespace marey {
+
+/// `wanted`, or "wanted 2", "wanted 3", ... where a system (path) has that name already.
+std::string freeSystemName(const Experiment& experiment, const std::string& wanted);
+std::string freePathName(const Experiment& experiment, const std::string& wanted);
+
+/// Adds a model under a free name; returns its index.
+size_t addSystem(Experiment& experiment, const std::string& model, const std::string& name);
+/// Adds a path under a free name; returns its index.
+size_t addPath(Experiment& experiment, ExperimentPath path);
+/// Adds sources of natural motion that are not there yet; returns how many were added.
+size_t addNatural(Experiment& experiment, const std::vector<std::string>& sources);
+/// Renames the item at `index`. Throws InputError where the name is empty or taken.
+void renameSystem(Experiment& experiment, size_t index, const std::string& name);
+void renamePath(Experiment& experiment, size_t index, const std::string& name);
+/// Makes relative file names of the document start at `folder` instead of at its present folder,
+/// so that a document saved elsewhere still finds its files.
+void moveToFolder(Experiment& experiment, const std::filesystem::path& folder);
+
+}  // namespace marey

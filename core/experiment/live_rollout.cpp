@@ -1,0 +1,103 @@
+#include "experiment/live_rollout.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "model/sampler.h"
+
+namespace marey {
+namespace {
+
+/// Displacements and turn of one frame.
+Eigen::RowVector3f controlOf(const LiveCommand& velocity, double fps) {
+  return {static_cast<float>(velocity.sidewaysMS / fps),
+          static_cast<float>(velocity.forwardMS / fps),
+          static_cast<float>(velocity.turnRadS / fps)};
+}
+
+void approach(double& value, double wanted, double share) {
+  value += share * (wanted - value);
+}
+
+}  // namespace
+
+LiveRollout::LiveRollout(std::shared_ptr<const MotionModel> model, const LiveOptions& options)
+    : m_model(std::move(model)),
+      m_options(options),
+      m_velocity(options.begin),
+      m_root(options.start) {
+  const ModelInfo& info = m_model->info();
+  if (!info.skeleton)
+    throw InputError({.path = info.variant}, "a model with a skeleton", "one imported without it");
+  if (info.controlDim != 3)
+    throwInput({.path = info.variant}, "a model that is controlled by a path (3 values per frame)",
+               "{} control values", info.controlDim);
+  const int rows = info.context + 1 + info.lookahead;
+  m_window = controlOf(m_velocity, info.features.fps).replicate(1, rows);
+  m_state = m_model->start(1, {});
+  const auto warmUp = static_cast<int>(std::lround(options.warmUpS * info.features.fps));
+  for (int t = 0; t < warmUp; ++t) step();
+}
+
+/// Draws the next pose under the present velocity.
+void LiveRollout::step() {
+  const ModelInfo& info = m_model->info();
+  const long wide = info.controlDim;
+  const long kept = static_cast<long>(info.context) * wide;
+  const Matrix past = m_window.middleCols(wide, kept);
+  m_window.leftCols(kept) = past;
+  m_window.rightCols(m_window.cols() - kept) =
+      controlOf(m_velocity, info.features.fps).replicate(1, 1 + info.lookahead);
+  Matrix latent(1, info.poseDim);
+  drawLatent(m_options.seed, m_options.sample, m_generated, m_options.temperature,
+             m_model->baseDegreesOfFreedom(), {latent.data(), static_cast<size_t>(info.poseDim)});
+  m_pose = m_model->sampleFrame(m_state, m_window, latent);
+  if (!m_pose.allFinite())
+    throw NumericError(fmt::format(
+        "the motion left the range of numbers at frame {}: expected finite poses, found NaN or "
+        "infinity (try a lower temperature)",
+        m_frames));
+  ++m_generated;
+}
+
+std::vector<Vec3> LiveRollout::advance(const LiveCommand& command) {
+  const ModelInfo& info = m_model->info();
+  const double fps = info.features.fps;
+  const double share =
+      m_options.smoothingS > 0.0 ? 1.0 - std::exp(-1.0 / (fps * m_options.smoothingS)) : 1.0;
+  approach(m_velocity.forwardMS, command.forwardMS, share);
+  approach(m_velocity.sidewaysMS, command.sidewaysMS, share);
+  approach(m_velocity.turnRadS, command.turnRadS, share);
+  step();
+  const Eigen::RowVector3f control = controlOf(m_velocity, fps);
+  if (m_frames > 0) m_root = trajectoryFromControl(control.replicate(2, 1), m_root).back();
+  m_poses.insert(m_poses.end(), m_pose.data(), m_pose.data() + m_pose.size());
+  m_controls.insert(m_controls.end(), control.data(), control.data() + control.size());
+  m_trajectory.push_back(m_root);
+  ++m_frames;
+  return rebuildMotion(m_pose, control, m_root, info.skeleton, fps).positions;
+}
+
+FeatureSequence LiveRollout::sequence() const {
+  const ModelInfo& info = m_model->info();
+  FeatureSequence out{.name = "live", .pose = {}, .control = {}, .start = m_options.start};
+  out.pose = Eigen::Map<const Matrix>(m_poses.data(), m_frames, info.poseDim);
+  out.control = Eigen::Map<const Matrix>(m_controls.data(), m_frames, info.controlDim);
+  // The first row has no previous frame: by convention it repeats the second.
+  if (m_frames > 1) out.control.row(0) = out.control.row(1);
+  return out;
+}
+
+std::vector<WayPoint> LiveRollout::walkedPath() const {
+  const double fps = m_model->info().features.fps;
+  std::vector<WayPoint> out;
+  for (size_t t = 0; t < m_trajectory.size(); ++t) {
+    WayPoint point{.x = m_trajectory[t].x, .z = m_trajectory[t].z};
+    point.timeS = static_cast<double>(t) / fps;
+    point.facing = m_trajectory[t].heading;
+    out.push_back(point);
+  }
+  return out;
+}
+
+}  // namespace marey

@@ -1,0 +1,66 @@
+// One motion of a model, steered while it is made: a command in, the next frame out.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "model/motion_model.h"
+#include "motion/path.h"
+
+namespace marey {
+
+/// Velocities of the root in its own frame.
+struct LiveCommand {
+  double forwardMS = 0.0;
+  double sidewaysMS = 0.0;  ///< positive: to the left
+  double turnRadS = 0.0;    ///< positive: to the left
+};
+
+struct LiveOptions {
+  uint64_t seed = 1;
+  int sample = 0;
+  double temperature = 1.0;
+  double warmUpS = 1.0;     ///< generated under `begin` and dropped, as the sampler does
+  double smoothingS = 0.3;  ///< time constant with which the velocity follows the command; 0: none
+  LiveCommand begin = {};   ///< velocity at the start
+  RootFrame start = {};
+};
+
+/// Deterministic for model, options and the commands. With a constant command equal to `begin` it
+/// is the sampler's motion of that seed and sample along the straight path or circle. Where the
+/// model looks ahead, it is told that the velocity stays as it is. Not thread-safe.
+class LiveRollout {
+ public:
+  /// Throws InputError for a model without a skeleton or of another control than a path.
+  LiveRollout(std::shared_ptr<const MotionModel> model, const LiveOptions& options);
+
+  /// World positions of the next frame's joints, metres. The first frame stands at
+  /// LiveOptions::start. Throws NumericError when the pose is not finite.
+  std::vector<Vec3> advance(const LiveCommand& command);
+  int frameCount() const { return m_frames; }
+  const MotionModel& model() const { return *m_model; }
+  const LiveOptions& options() const { return m_options; }
+  /// Of the last frame.
+  const RootFrame& root() const { return m_root; }
+  /// All frames so far, as a model sees them.
+  FeatureSequence sequence() const;
+  /// Way-points at every frame: a path that passes where the root went, when it did.
+  std::vector<WayPoint> walkedPath() const;
+
+ private:
+  void step();
+
+  std::shared_ptr<const MotionModel> m_model;
+  LiveOptions m_options;
+  LiveCommand m_velocity;
+  RolloutState m_state;
+  Matrix m_window;  ///< [1, (context + 1 + lookahead) * C]
+  Matrix m_pose;    ///< [1, D], of the last frame
+  RootFrame m_root;
+  int m_generated = 0;  ///< frames with the warm-up's
+  int m_frames = 0;
+  std::vector<float> m_poses, m_controls;  ///< rows of all frames
+  std::vector<RootFrame> m_trajectory;
+};
+
+}  // namespace marey

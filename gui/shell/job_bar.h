@@ -1,0 +1,29 @@
+// The status bar's right end: what runs, how far it is, how long it still takes, and a button that
+// stops it.
+#pragma once
+
+#include <QWidget>
+
+#include "shell/jobs.h"
+
+class QLabel;
+class QProgressBar;
+class QToolButton;
+
+namespace marey::gui {
+
+class JobBar : public QWidget {
+  Q_OBJECT
+ public:
+  JobBar(JobQueue& jobs, QWidget* parent);
+
+ private:
+  void refresh();
+
+  JobQueue& m_jobs;
+  QLabel* m_text;
+  QProgressBar* m_bar;
+  QToolButton* m_cancel;
+};
+
+}  // namespace marey::gui

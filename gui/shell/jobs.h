@@ -1,0 +1,63 @@
+// Long work beside the event loop: the adapter from core jobs to Qt signals.
+#pragma once
+
+#include <QObject>
+#include <QString>
+#include <QTimer>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "base/job.h"
+
+namespace marey::gui {
+
+/// Jobs of one lane run one after the other, lanes side by side: models keep all cores busy, files
+/// can be read meanwhile.
+enum class Lane { Files, Models };
+
+struct JobStatus {
+  int id = 0;
+  QString title, message;
+  double fraction = 0.0;
+  bool waiting = true;   ///< for the lane's earlier jobs
+  double seconds = 0.0;  ///< running so far
+  /// Estimated from the rate so far; negative while unknown.
+  double secondsLeft = -1.0;
+};
+
+/// Lives on the GUI thread; `work` runs on another one, `done` and all signals on the GUI thread.
+class JobQueue : public QObject {
+  Q_OBJECT
+ public:
+  explicit JobQueue(QObject* parent = nullptr);
+  /// Asks running work to stop and waits for it.
+  ~JobQueue() override;
+
+  /// `done` is called after success only.
+  int start(Lane lane, const QString& title, Job::Work work, std::function<void()> done = {});
+  void cancel(int id);
+  void cancelAll();
+  /// Cancels everything and waits until the running work has ended.
+  void stop();
+  bool idle() const;
+  std::vector<JobStatus> jobs() const;
+
+ Q_SIGNALS:
+  void changed();
+  void ended(int id, bool successful);
+  void failed(const QString& title, const QString& error);
+
+ private:
+  struct Entry;
+  void advance();
+  void startNext(Lane lane);
+  void finish(size_t index);
+
+  std::vector<std::unique_ptr<Entry>> m_entries;  ///< in the order of starting
+  QTimer m_timer;
+  int m_nextId = 1;
+};
+
+}  // namespace marey::gui

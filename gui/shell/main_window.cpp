@@ -1,0 +1,165 @@
+#include "shell/main_window.h"
+
+#include <QAction>
+#include <QApplication>
+#include <QCloseEvent>
+#include <QFileInfo>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QSettings>
+#include <QStatusBar>
+
+#include "shell/job_bar.h"
+#include <qtadvanceddocking/DockAreaWidget.h>
+#include <qtadvanceddocking/DockManager.h>
+#include <qtadvanceddocking/DockWidget.h>
+
+namespace marey::gui {
+namespace {
+
+ads::DockWidgetArea dockArea(PanelArea area) {
+  switch (area) {
+    case PanelArea::Left:
+      return ads::LeftDockWidgetArea;
+    case PanelArea::Right:
+      return ads::RightDockWidgetArea;
+    case PanelArea::Plots:
+    case PanelArea::Bottom:
+      return ads::BottomDockWidgetArea;
+    case PanelArea::Centre:
+      break;
+  }
+  return ads::CenterDockWidgetArea;
+}
+
+constexpr int kMessageMs = 8000;
+
+}  // namespace
+
+MainWindow::MainWindow(Workspace& workspace, const std::vector<PanelSpec>& panels)
+    : m_workspace(workspace), m_autosave(std::make_unique<Autosave>(workspace)) {
+  setObjectName(QStringLiteral("marey"));
+  setAcceptDrops(true);
+  resize(1500, 920);
+  buildDocks(panels);
+  buildMenus();
+  statusBar()->addPermanentWidget(new JobBar(workspace.jobs(), this));
+  connect(&m_workspace, &Workspace::errorReported, this, &MainWindow::showError);
+  connect(&m_workspace, &Workspace::documentChanged, this, &MainWindow::refreshTitle);
+  refreshTitle();
+  const QSettings settings;
+  setTheme(settings.value(QStringLiteral("theme")).toString() == QLatin1String("dark")
+               ? Theme::Dark
+               : Theme::Light);
+  restoreGeometry(settings.value(QStringLiteral("geometry")).toByteArray());
+  m_docks->restoreState(settings.value(QStringLiteral("layout")).toByteArray());
+}
+
+MainWindow::~MainWindow() = default;
+
+void MainWindow::buildDocks(const std::vector<PanelSpec>& panels) {
+  ads::CDockManager::setConfigFlags(ads::CDockManager::DefaultOpaqueConfig);
+  ads::CDockManager::setConfigFlag(ads::CDockManager::FocusHighlighting, false);
+  ads::CDockManager::setConfigFlag(ads::CDockManager::DockAreaHasTabsMenuButton, false);
+  ads::CDockManager::setConfigFlag(ads::CDockManager::DockAreaHasUndockButton, false);
+  ads::CDockManager::setConfigFlag(ads::CDockManager::ActiveTabHasCloseButton, false);
+  m_docks = new ads::CDockManager(this);
+  m_docks->setStyleSheet({});  // the application's theme holds
+  std::map<PanelArea, ads::CDockAreaWidget*> areas;
+  for (const PanelSpec& spec : panels) {
+    auto* dock = new ads::CDockWidget(spec.title);
+    dock->setObjectName(spec.id);
+    QWidget* content = spec.make(m_workspace, dock);
+    content->setObjectName(spec.id + QStringLiteral("Panel"));
+    dock->setWidget(content, ads::CDockWidget::ForceNoScrollArea);
+    auto& area = areas[spec.area];
+    if (area != nullptr)
+      m_docks->addDockWidgetTabToArea(dock, area);
+    else
+      area =
+          m_docks->addDockWidget(dockArea(spec.area), dock,
+                                 spec.area == PanelArea::Plots ? areas[PanelArea::Right] : nullptr);
+    m_panels[spec.id] = dock;
+  }
+  for (const auto& [place, area] : areas) area->setCurrentIndex(0);
+  const auto size = [&](PanelArea area, const QList<int>& sizes) {
+    if (areas.contains(area)) m_docks->setSplitterSizes(areas[area], sizes);
+  };
+  size(PanelArea::Centre, {280, 680, 540});
+  size(PanelArea::Plots, {330, 350});
+  size(PanelArea::Bottom, {640, 230});
+  m_firstLayout = m_docks->saveState();
+}
+
+QWidget* MainWindow::showPanel(const QString& id) {
+  const auto found = m_panels.find(id);
+  if (found == m_panels.end()) return nullptr;
+  found->second->toggleView(true);
+  found->second->setAsCurrentTab();
+  return found->second->widget();
+}
+
+void MainWindow::setTheme(Theme theme) {
+  m_theme = theme;
+  applyTheme(*qApp, theme);
+  QSettings().setValue(QStringLiteral("theme"), theme == Theme::Dark ? "dark" : "light");
+}
+
+void MainWindow::refreshTitle() {
+  const QString file = m_workspace.file();
+  const QString name = file.isEmpty() ? QString::fromStdString(m_workspace.experiment().title)
+                                      : QFileInfo(file).fileName();
+  setWindowTitle(name + QStringLiteral("[*] – Marey"));
+  setWindowModified(m_workspace.modified());
+  const auto& history = m_workspace.history();
+  m_undo->setEnabled(history.canUndo());
+  m_redo->setEnabled(history.canRedo());
+  m_undo->setText(history.canUndo()
+                      ? tr("Undo %1").arg(QString::fromStdString(history.label(history.index())))
+                      : tr("Undo"));
+  m_redo->setText(history.canRedo() ? tr("Redo %1").arg(QString::fromStdString(
+                                          history.label(history.index() + 1)))
+                                    : tr("Redo"));
+}
+
+void MainWindow::showError(const QString& title, const QString& error) {
+  statusBar()->showMessage(title + QStringLiteral(": ") + error, kMessageMs);
+  // Not modal: work goes on, and several errors do not queue up behind each other.
+  auto* box = findChild<QMessageBox*>(QStringLiteral("errorBox"));
+  if (box == nullptr) {
+    box = new QMessageBox(QMessageBox::Warning, tr("Marey"), {}, QMessageBox::Ok, this);
+    box->setObjectName(QStringLiteral("errorBox"));
+    box->setModal(false);
+    box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  }
+  box->setText(tr("%1 did not work.").arg(title));
+  box->setInformativeText(error);
+  box->show();
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  if (!mayDiscard()) {
+    event->ignore();
+    return;
+  }
+  QSettings settings;
+  settings.setValue(QStringLiteral("geometry"), saveGeometry());
+  settings.setValue(QStringLiteral("layout"), m_docks->saveState());
+  m_workspace.jobs().cancelAll();
+  m_autosave->remove();
+  event->accept();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  if (event->mimeData()->hasUrls()) event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  QStringList files;
+  for (const QUrl& url : event->mimeData()->urls())
+    if (url.isLocalFile()) files += url.toLocalFile();
+  openFiles(files);
+  event->acceptProposedAction();
+}
+
+}  // namespace marey::gui

@@ -1,0 +1,157 @@
+// Commands that read and write files.
+#include <QFileDialog>
+#include <QMessageBox>
+#include <QStatusBar>
+
+#include "families.h"
+#include "shell/main_window.h"
+
+#include "base/error.h"
+#include "experiment/edits.h"
+#include "experiment/run.h"
+#include "io/clip_io.h"
+#include "report/experiment_report.h"
+#include "report/report.h"
+
+namespace marey::gui {
+
+void MainWindow::openDemo() {
+  if (!mayDiscard()) return;
+  try {
+    m_workspace.open(demoDocument(), {});
+  } catch (const Error& error) {
+    showError(tr("Opening the demo"), QString::fromStdString(error.what()));
+  }
+}
+
+void MainWindow::open(const QString& given) {
+  if (!mayDiscard()) return;
+  const QString file =
+      !given.isEmpty() ? given
+                       : QFileDialog::getOpenFileName(this, tr("Open an experiment"), {},
+                                                      tr("Experiments (*.json);;All files (*)"));
+  if (file.isEmpty()) return;
+  try {
+    m_workspace.open(readExperiment(file.toStdString()), file);
+    rememberRecent(file);
+  } catch (const Error& error) {
+    showError(tr("Opening %1").arg(file), QString::fromStdString(error.what()));
+  }
+}
+
+bool MainWindow::save() {
+  if (m_workspace.file().isEmpty()) return saveAs();
+  try {
+    m_workspace.save(m_workspace.file());
+  } catch (const Error& error) {
+    showError(tr("Saving"), QString::fromStdString(error.what()));
+    return false;
+  }
+  rememberRecent(m_workspace.file());
+  m_autosave->remove();
+  statusBar()->showMessage(tr("Saved %1").arg(m_workspace.file()), 4000);
+  return true;
+}
+
+bool MainWindow::saveAs() {
+  QString file = QFileDialog::getSaveFileName(this, tr("Save the experiment"), m_workspace.file(),
+                                              tr("Experiments (*.json)"));
+  if (file.isEmpty()) return false;
+  if (!file.endsWith(QStringLiteral(".json"))) file += QStringLiteral(".json");
+  try {
+    m_workspace.save(file);
+  } catch (const Error& error) {
+    showError(tr("Saving"), QString::fromStdString(error.what()));
+    return false;
+  }
+  rememberRecent(file);
+  m_autosave->remove();
+  return true;
+}
+
+bool MainWindow::mayDiscard() {
+  if (!m_workspace.modified()) return true;
+  const auto answer = QMessageBox::question(
+      this, tr("Marey"), tr("The document has changes that are not saved."),
+      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
+  if (answer == QMessageBox::Save) return save();
+  return answer == QMessageBox::Discard;
+}
+
+void MainWindow::offerRecovery() {
+  for (Recovered& one : Autosave::recover()) {
+    const QString name =
+        one.file.isEmpty() ? QString::fromStdString(one.experiment.title) : one.file;
+    const auto answer = QMessageBox::question(
+        this, tr("Unsaved work"),
+        tr("Marey ended without saving “%1” (last change %2). Open what was kept?")
+            .arg(name, one.when));
+    if (answer != QMessageBox::Yes) continue;
+    const Experiment kept = one.experiment;
+    m_workspace.open({.folder = kept.folder}, one.file);
+    m_workspace.edit(tr("Recover unsaved work"), [&](Experiment& e) { e = kept; });
+    return;
+  }
+}
+
+void MainWindow::addMotionFiles() {
+  openFiles(QFileDialog::getOpenFileNames(this, tr("Add natural motion"), {},
+                                          tr("Motion (*.bvh *.amc *.npz *.txt);;All files (*)")));
+}
+
+void MainWindow::addModels() {
+  openFiles(
+      QFileDialog::getOpenFileNames(this, tr("Add models"), {}, tr("Marey models (*.marey)")));
+}
+
+void MainWindow::openFiles(const QStringList& files) {
+  std::vector<std::string> motions, models;
+  for (const QString& file : files) {
+    const std::string path = file.toStdString();
+    if (file.endsWith(QStringLiteral(".json"))) return open(file);
+    if (file.endsWith(QStringLiteral(".marey")))
+      models.push_back(path);
+    else
+      motions.push_back(path);
+  }
+  if (!models.empty())
+    m_workspace.edit(tr("Add models"), [&](Experiment& e) {
+      for (const std::string& file : models) {
+        m_workspace.model(file);  // what is no model is refused here
+        addSystem(e, file, std::filesystem::path(file).stem().string());
+      }
+    });
+  if (!motions.empty() && m_importer) {
+    QStringList names;
+    for (const std::string& file : motions) names += QString::fromStdString(file);
+    m_importer(names);
+  } else if (!motions.empty()) {
+    m_workspace.edit(tr("Add natural motion"), [&](Experiment& e) {
+      for (const std::string& file : motions)
+        if (!std::filesystem::is_directory(file) && !io::isMotionFile(file))
+          throw InputError({.path = file}, "an experiment, a model or a motion file",
+                           "something else");
+      addNatural(e, motions);
+    });
+  }
+}
+
+void MainWindow::writeReport() {
+  const QString folder =
+      QFileDialog::getSaveFileName(this, tr("Folder of the report"), QStringLiteral("report"));
+  if (folder.isEmpty()) return;
+  const Experiment document = m_workspace.experiment();
+  const std::string out = folder.toStdString();
+  m_workspace.jobs().start(
+      Lane::Models, tr("Writing the report"),
+      [document, out](Progress& progress) {
+        Progress running = progress.part(0.0, 0.7), drawing = progress.part(0.7, 0.8),
+                 writing = progress.part(0.8, 1.0);
+        const auto result = runExperiment(document, modelFamilies(), running);
+        const auto data = report::reportOf(result, "marey report", drawing);
+        report::writeReport(data, out, writing);
+      },
+      [this, folder] { statusBar()->showMessage(tr("Report written to %1").arg(folder), 8000); });
+}
+
+}  // namespace marey::gui

@@ -1,0 +1,60 @@
+// What the window shows: natural clips and sample sets, as plain values.
+#pragma once
+
+#include <compare>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "experiment/sample_set.h"
+#include "render/colours.h"
+
+namespace marey::gui {
+
+struct Motion {
+  ClipPtr clip;
+  std::optional<ClipScore>
+      score;  ///< of a sample under its own model; natural clips: see Workspace
+  bool visible = true;
+};
+
+/// The natural clips, or the motions of one sample set.
+struct MotionGroup {
+  int id = 0;  ///< never used again
+  std::string name;
+  std::string system;    ///< of the document; empty for natural motion
+  int colourIndex = -1;  ///< of render::colourOf; -1: natural motion
+  bool pinned = false;   ///< kept when its system and path are sampled again
+  bool complete = true;  ///< false while motions are being added
+  std::optional<SampleRecipe> recipe;
+  std::string modelHash;
+  std::vector<RootFrame> wanted;  ///< the path that was asked for
+  std::vector<Motion> motions;
+
+  bool natural() const { return colourIndex < 0; }
+  render::Colour colour() const {
+    return natural() ? render::naturalColour() : render::colourOf(colourIndex);
+  }
+};
+
+struct MotionId {
+  int group = -1;  ///< MotionGroup::id
+  int index = -1;  ///< in its motions
+  auto operator<=>(const MotionId&) const = default;
+};
+
+/// What is lit up in every view at once.
+struct Selection {
+  std::set<MotionId> motions;
+  std::optional<int> joint;
+  bool operator==(const Selection&) const = default;
+};
+
+struct TimeRange {
+  double beginS = 0.0, endS = 0.0;
+  bool operator==(const TimeRange&) const = default;
+};
+
+}  // namespace marey::gui

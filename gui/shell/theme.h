@@ -1,0 +1,15 @@
+// Light and dark: palette, style sheet and icons drawn in the palette's ink.
+#pragma once
+
+#include <QApplication>
+#include <QIcon>
+
+namespace marey::gui {
+
+enum class Theme { Light, Dark };
+
+void applyTheme(QApplication& application, Theme theme);
+/// Whether a palette is a dark one: what pictures choose their background by.
+bool isDark(const QPalette& palette);
+
+}  // namespace marey::gui

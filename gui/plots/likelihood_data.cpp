@@ -1,0 +1,176 @@
+#include "plots/likelihood_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/motion_model.h"
+#include "stats/sample_distance.h"
+
+namespace marey::gui {
+namespace {
+using render::Series;
+using render::SeriesKind;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+void addNatural(std::vector<LikelihoodGroup>& out, const MotionSet& set, const std::string& system,
+                const std::vector<ClipScore>& scores, double fps) {
+  LikelihoodGroup group{.look = lookOf(set), .fps = fps};
+  group.look.name = "natural under " + system;
+  group.look.dashed =
+      std::any_of(out.begin(), out.end(), [](const LikelihoodGroup& g) { return g.look.natural; });
+  group.look.ids.clear();
+  for (const MotionId& id : set.ids) {
+    const auto index = static_cast<size_t>(id.index);
+    if (index >= scores.size() || scores[index].loglikNats.empty()) continue;
+    group.look.ids.push_back(id);
+    group.runs.push_back({id, scores[index].firstFrame, scores[index].loglikNats});
+  }
+  if (!group.runs.empty()) out.push_back(std::move(group));
+}
+
+/// Values at the frames of the clip, from frame 0: runs of other models start elsewhere.
+std::vector<double> fromFrameZero(const LikelihoodRun& run) {
+  std::vector<double> out(static_cast<size_t>(run.firstFrame), kNaN);
+  out.insert(out.end(), run.nats.begin(), run.nats.end());
+  return out;
+}
+
+void addBand(LinkedGrid& out, const LikelihoodGroup& group) {
+  std::vector<std::vector<double>> runs;
+  for (const LikelihoodRun& run : group.runs) runs.push_back(fromFrameZero(run));
+  Band band = bandOf(runs);
+  for (double& t : band.step) t /= group.fps;
+  if (group.runs.size() > 1)
+    out.add(group.look.band(band.step, band.low, band.high), group.look.ids);
+  out.add(group.look.line(std::move(band.step), std::move(band.median)), group.look.ids);
+}
+
+void addCloud(LinkedGrid& out, const LikelihoodGroup& group) {
+  size_t frames = 0;
+  for (const LikelihoodRun& run : group.runs)
+    frames = std::max(frames, static_cast<size_t>(run.firstFrame) + run.nats.size());
+  std::vector<float> rows(frames * group.runs.size(), static_cast<float>(kNaN));
+  for (size_t r = 0; r < group.runs.size(); ++r) {
+    const LikelihoodRun& run = group.runs[r];
+    auto to = rows.begin() + static_cast<std::ptrdiff_t>(r * frames) + run.firstFrame;
+    for (const double v : run.nats) *to++ = static_cast<float>(v);
+  }
+  Series cloud{.kind = SeriesKind::Cloud,
+               .name = group.look.name,
+               .colour = group.look.colour,
+               .width = 1.2,
+               .opacity = std::clamp(3.0 / static_cast<double>(group.runs.size()), 0.03, 0.8)};
+  for (size_t t = 0; t < frames; ++t) cloud.x.push_back(static_cast<double>(t) / group.fps);
+  cloud.cloud = std::make_shared<const render::CloudLines>(std::move(rows));
+  out.add(std::move(cloud), group.look.ids);
+}
+
+/// One frame far below all others must not flatten the rest.
+std::optional<std::pair<double, double>> centralRange(const std::vector<LikelihoodGroup>& groups) {
+  std::vector<double> all;
+  for (const LikelihoodGroup& group : groups)
+    for (const LikelihoodRun& run : group.runs)
+      for (const double v : run.nats)
+        if (std::isfinite(v)) all.push_back(v);
+  if (all.size() < 2) return std::nullopt;
+  std::sort(all.begin(), all.end());
+  const double low = stats::sortedQuantile(all, 0.002), high = all.back();
+  if (!(low < high)) return std::nullopt;
+  return std::pair{low - 0.06 * (high - low), high + 0.06 * (high - low)};
+}
+}  // namespace
+
+std::vector<LikelihoodGroup> likelihoodGroups(const std::vector<MotionGroup>& groups,
+                                              const std::vector<std::string>& systems,
+                                              const NaturalScores& naturalScores, double fps) {
+  std::vector<LikelihoodGroup> out;
+  for (const MotionSet& set : motionSets(groups)) {
+    if (set.natural) {
+      for (const std::string& system : systems)
+        if (const auto* scores = naturalScores(system)) addNatural(out, set, system, *scores, fps);
+      continue;
+    }
+    const auto owner = std::find_if(groups.begin(), groups.end(),
+                                    [&](const MotionGroup& g) { return g.id == set.group; });
+    LikelihoodGroup group{.look = lookOf(set), .fps = set.clips.front()->fps};
+    group.look.ids.clear();
+    for (const MotionId& id : set.ids) {
+      const auto& score = owner->motions[static_cast<size_t>(id.index)].score;
+      if (!score || score->loglikNats.empty()) continue;
+      group.look.ids.push_back(id);
+      group.runs.push_back({id, score->firstFrame, score->loglikNats});
+    }
+    if (!group.runs.empty()) out.push_back(std::move(group));
+  }
+  return out;
+}
+
+std::vector<double> runningMean(const std::vector<double>& values, int window) {
+  const int half = std::max(0, window / 2), count = static_cast<int>(values.size());
+  std::vector<double> sums{0.0}, out;
+  for (const double v : values) sums.push_back(sums.back() + v);
+  for (int t = 0; t < count; ++t) {
+    const int first = std::max(0, t - half), last = std::min(count, t + half + 1);
+    out.push_back((sums[static_cast<size_t>(last)] - sums[static_cast<size_t>(first)]) /
+                  (last - first));
+  }
+  return out;
+}
+
+void smooth(std::vector<LikelihoodGroup>& groups, double seconds) {
+  for (LikelihoodGroup& group : groups)
+    for (LikelihoodRun& run : group.runs)
+      run.nats = runningMean(run.nats, static_cast<int>(std::lround(seconds * group.fps)));
+}
+
+std::optional<WorstFrame> worstFrame(const std::vector<LikelihoodGroup>& groups,
+                                     const std::optional<TimeRange>& range) {
+  std::optional<WorstFrame> worst;
+  for (const bool natural : {false, true}) {
+    for (const LikelihoodGroup& group : groups) {
+      if (group.look.natural != natural) continue;
+      for (const LikelihoodRun& run : group.runs)
+        for (size_t i = 0; i < run.nats.size(); ++i) {
+          const double time = (run.firstFrame + static_cast<double>(i)) / group.fps;
+          if (range && (time < range->beginS || time > range->endS)) continue;
+          if (!worst || run.nats[i] < worst->nats) worst = WorstFrame{run.id, time, run.nats[i]};
+        }
+    }
+    if (worst) break;
+  }
+  return worst;
+}
+
+std::optional<double> linearGaussianFloor(const ModelInfo& info) {
+  const Json facts = info.provenance.value("facts", Json::object());
+  if (!facts.contains("linear_gaussian_nats_per_frame")) return std::nullopt;
+  return facts["linear_gaussian_nats_per_frame"].get<double>() + info.standardiser.logDetPerFrame();
+}
+
+LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
+                          const std::vector<LikelihoodFloor>& floors, bool everyMotion) {
+  LinkedGrid out{.grid = render::single({})};
+  if (groups.empty()) return out;
+  render::Chart& chart = out.grid.charts.front();
+  chart.x = {.label = "time", .unit = "s"};
+  chart.y = {.label = "log-likelihood", .unit = "nats/frame"};
+  for (const LikelihoodGroup& group : groups)
+    everyMotion ? addCloud(out, group) : addBand(out, group);
+  if (everyMotion) chart.y.range = centralRange(groups);
+  for (const LikelihoodFloor& floor : floors) {
+    if (chart.y.range) {
+      const double margin = 0.04 * (chart.y.range->second - floor.nats);
+      chart.y.range->first = std::min(chart.y.range->first, floor.nats - margin);
+    }
+    out.add({.kind = SeriesKind::HorizontalRule,
+             .name = floors.size() > 1 ? "linear-Gaussian, " + floor.system : "linear-Gaussian",
+             .colour = render::grey(0.45),
+             .y = {floor.nats},
+             .width = 1.4,
+             .dashed = true});
+  }
+  return out;
+}
+
+}  // namespace marey::gui

@@ -1,0 +1,57 @@
+// Log-likelihoods over time: nats per frame, poses in metres (numbers as in ClipScore).
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "plots/linked_grid.h"
+
+namespace marey::gui {
+
+struct LikelihoodRun {
+  MotionId id;
+  int firstFrame = 0;  ///< of the first value
+  std::vector<double> nats;
+};
+
+struct LikelihoodGroup {
+  SetLook look;
+  double fps = 20.0;
+  std::vector<LikelihoodRun> runs;
+};
+
+/// Scores of natural clips under a system; null where there are none (Workspace::naturalScores).
+using NaturalScores = std::function<const std::vector<ClipScore>*(const std::string& system)>;
+
+/// Samples under their own model, and natural motion under every system (drawn dashed from the
+/// second system on). Scores of samples are looked up in `groups`.
+std::vector<LikelihoodGroup> likelihoodGroups(const std::vector<MotionGroup>& groups,
+                                              const std::vector<std::string>& systems,
+                                              const NaturalScores& naturalScores, double fps);
+
+/// Centred running mean over `window` values (made odd), over fewer at the ends.
+std::vector<double> runningMean(const std::vector<double>& values, int window);
+/// The same over a time.
+void smooth(std::vector<LikelihoodGroup>& groups, double seconds);
+
+struct WorstFrame {
+  MotionId id;
+  double timeS = 0.0, nats = 0.0;
+};
+/// The least likely frame inside the range: of samples, and of natural motion where there are none.
+std::optional<WorstFrame> worstFrame(const std::vector<LikelihoodGroup>& groups,
+                                     const std::optional<TimeRange>& range);
+
+struct LikelihoodFloor {
+  std::string system;
+  double nats = 0.0;
+};
+/// What a linear-Gaussian model without a network reaches on the training data, in nats per frame
+/// of poses in metres, where the model's provenance has it.
+std::optional<double> linearGaussianFloor(const ModelInfo& info);
+
+/// Median and 5 to 95 % band per group, or every motion as a line of a cloud.
+LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
+                          const std::vector<LikelihoodFloor>& floors, bool everyMotion);
+
+}  // namespace marey::gui

@@ -1,0 +1,59 @@
+// A chart whose curves know the motions that they were made of.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "plots/chart_hit.h"
+#include "plots/motion_sets.h"
+
+namespace marey::gui {
+
+struct LinkedGrid {
+  render::ChartGrid grid;
+  std::map<CurveRef, std::vector<MotionId>> motions;
+
+  /// Adds a series to the last chart.
+  void add(render::Series series, const std::vector<MotionId>& ids = {}) {
+    render::Chart& chart = grid.charts.back();
+    const CurveRef curve{static_cast<int>(grid.charts.size()) - 1,
+                         static_cast<int>(chart.series.size()), -1};
+    // The lines of a cloud are one motion each.
+    for (size_t i = 0; series.cloud && i < ids.size(); ++i)
+      motions[{curve.chart, curve.series, static_cast<int>(i)}] = {ids[i]};
+    if (!series.cloud && !ids.empty()) motions[curve] = ids;
+    chart.series.push_back(std::move(series));
+  }
+};
+
+/// How a set is drawn everywhere.
+struct SetLook {
+  std::string name;
+  render::Colour colour;
+  bool dashed = false, natural = false;
+  std::vector<MotionId> ids;
+
+  render::Series line(std::vector<double> x, std::vector<double> y) const {
+    return {.kind = render::SeriesKind::Line,
+            .name = name,
+            .colour = colour,
+            .x = std::move(x),
+            .y = std::move(y),
+            .dashed = dashed};
+  }
+  render::Series band(std::vector<double> x, std::vector<double> low,
+                      std::vector<double> high) const {
+    return {.kind = render::SeriesKind::Band,
+            .colour = colour,
+            .x = std::move(x),
+            .low = std::move(low),
+            .high = std::move(high),
+            .opacity = 0.16,
+            .inLegend = false};
+  }
+};
+inline SetLook lookOf(const MotionSet& set) {
+  return {set.name, set.colour, set.dashed, set.natural, set.ids};
+}
+
+}  // namespace marey::gui

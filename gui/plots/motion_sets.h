@@ -1,0 +1,44 @@
+// The motions that plots compare: one set per group, as values that another thread may use.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shell/motions.h"
+
+namespace marey::gui {
+
+struct MotionSet {
+  int group = -1;
+  std::string name;
+  std::string system;  ///< empty: natural motion
+  bool natural = false;
+  render::Colour colour;
+  bool dashed = false;  ///< a second set in the colour of another one
+  std::vector<MotionId> ids;
+  std::vector<ClipPtr> clips;     ///< one per id
+  std::vector<RootFrame> wanted;  ///< the path that was asked for
+};
+
+/// Sets of the groups that have something visible: the visible samples of a system, but all of the
+/// natural clips, of which the views show a few only. Natural motion comes first.
+std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups);
+const MotionSet* naturalSet(const std::vector<MotionSet>& sets);
+
+/// The parts of a set's motions inside a range of time (all without one), by the rule of
+/// Workspace::clipInRange; motions with nothing inside are left out.
+struct ClipsInRange {
+  std::vector<Clip> clips;
+  std::vector<std::vector<RootFrame>> wanted;  ///< of every clip; empty for natural motion
+};
+ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range);
+
+/// Median and 5 to 95 % over runs at every step; NaN are left out, and steps without a value.
+struct Band {
+  std::vector<double> step;  ///< index of the step
+  std::vector<double> low, median, high;
+};
+Band bandOf(const std::vector<std::vector<double>>& runs);
+
+}  // namespace marey::gui

@@ -1,0 +1,19 @@
+// What every file of a plot carries.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shell/motions.h"
+
+#include "render/recipe.h"
+
+namespace marey::gui {
+
+/// Document, range, and of every visible set its motions, model, seed and temperature.
+render::Recipe plotRecipe(const std::string& plot, const Experiment& experiment,
+                          const std::vector<MotionGroup>& groups,
+                          const std::optional<TimeRange>& range);
+
+}  // namespace marey::gui

@@ -1,0 +1,136 @@
+#include "plots/statistics_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace marey::gui {
+namespace {
+
+StatisticsRow& rowFor(StatisticsTable& table, const stats::StatisticResult& result) {
+  const auto found = std::find_if(table.rows.begin(), table.rows.end(),
+                                  [&](const StatisticsRow& r) { return r.name == result.name; });
+  if (found != table.rows.end()) return *found;
+  table.rows.push_back({.name = result.name,
+                        .unit = result.unit,
+                        .definition = result.definition,
+                        .source = result.source,
+                        .systems = {}});
+  table.rows.back().systems.resize(table.systems.size());
+  return table.rows.back();
+}
+
+std::string quoted(const std::string& text, char separator) {
+  if (separator != ',' || text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? fmt::format("{:.6g}", *value) : "";
+}
+
+/// In the order of the registry: a set may have statistics that the first one lacks.
+void sortRows(StatisticsTable& table) {
+  const auto& all = stats::allStatistics();
+  const auto place = [&](const StatisticsRow& row) {
+    return std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == row.name; });
+  };
+  std::stable_sort(table.rows.begin(), table.rows.end(),
+                   [&](const auto& a, const auto& b) { return place(a) < place(b); });
+}
+
+}  // namespace
+
+bool StatisticsInput::sameAs(const StatisticsInput& other) const {
+  const auto sameSet = [](const MotionSet& a, const MotionSet& b) {
+    return a.name == b.name && a.clips == b.clips;
+  };
+  return range == other.range && feet == other.feet && footStepCmS == other.footStepCmS &&
+         seed == other.seed &&
+         std::equal(sets.begin(), sets.end(), other.sets.begin(), other.sets.end(), sameSet);
+}
+
+std::string StatisticsInput::text() const {
+  std::string out;
+  for (const MotionSet& set : sets)
+    out += fmt::format("{}{} ({} {})", out.empty() ? "" : ", ", set.name, set.clips.size(),
+                       set.clips.size() == 1 ? "motion" : "motions");
+  if (range) out += fmt::format(", {:.2f} to {:.2f} s", range->beginS, range->endS);
+  return out;
+}
+
+StatisticsTable statisticsTable(const StatisticsInput& input, Progress& progress) {
+  StatisticsTable table{.input = input, .systems = {}, .rows = {}};
+  const MotionSet* naturalMotions = naturalSet(input.sets);
+  std::vector<Clip> natural;
+  if (naturalMotions != nullptr) natural = clipsIn(*naturalMotions, input.range).clips;
+  std::vector<ClipsInRange> sets;
+  for (const MotionSet& set : input.sets) {
+    if (set.natural) continue;
+    ClipsInRange clips = clipsIn(set, input.range);
+    if (clips.clips.empty()) continue;
+    table.systems.push_back(set.name);
+    sets.push_back(std::move(clips));
+  }
+  const bool naturalAlone = sets.empty() && !natural.empty();
+  if (naturalAlone) sets.push_back({.clips = natural, .wanted = {}});
+  for (size_t i = 0; i < sets.size(); ++i) {
+    const stats::StatisticInput one{.clips = &sets[i].clips,
+                                    .natural = natural.empty() || naturalAlone ? nullptr : &natural,
+                                    .wanted = sets[i].wanted.empty() ? nullptr : &sets[i].wanted,
+                                    .feet = input.feet,
+                                    .footStepCmS = input.footStepCmS};
+    Progress part = progress.part(static_cast<double>(i) / static_cast<double>(sets.size()),
+                                  static_cast<double>(i + 1) / static_cast<double>(sets.size()));
+    const auto results = stats::evaluate(stats::allStatistics(), one, {.seed = input.seed}, part);
+    for (const stats::StatisticResult& result : results) {
+      StatisticsRow& row = rowFor(table, result);
+      if (naturalAlone) {
+        row.natural = result.value;
+        row.naturalLow = result.low;
+        row.naturalHigh = result.high;
+        continue;
+      }
+      row.systems[i] = result;
+      if (row.natural) continue;
+      row.natural = result.natural;
+      row.naturalLow = result.naturalLow;
+      row.naturalHigh = result.naturalHigh;
+      row.noiseFloor = result.noiseFloor;
+    }
+  }
+  sortRows(table);
+  return table;
+}
+
+std::string statisticsText(const StatisticsTable& table, char separator) {
+  std::string out;
+  const auto line = [&](const std::vector<std::string>& cells) {
+    for (size_t i = 0; i < cells.size(); ++i)
+      out += (i > 0 ? std::string(1, separator) : "") + quoted(cells[i], separator);
+    out += "\n";
+  };
+  std::vector<std::string> head{"statistic", "unit"};
+  for (const std::string& system : table.systems)
+    head.insert(head.end(), {system, system + " low", system + " high"});
+  head.insert(head.end(),
+              {"natural", "natural low", "natural high", "noise floor", "definition", "source"});
+  line(head);
+  for (const StatisticsRow& row : table.rows) {
+    std::vector<std::string> cells{row.name, row.unit};
+    for (const auto& s : row.systems) {
+      cells.push_back(s ? number(s->value) : "");
+      cells.push_back(s ? number(s->low) : "");
+      cells.push_back(s ? number(s->high) : "");
+    }
+    cells.insert(cells.end(), {number(row.natural), number(row.naturalLow), number(row.naturalHigh),
+                               number(row.noiseFloor), row.definition, row.source});
+    line(cells);
+  }
+  return out;
+}
+
+}  // namespace marey::gui

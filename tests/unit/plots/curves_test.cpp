@@ -1,0 +1,182 @@
+// Curves, bands and tables of motions, against values worked out by hand.
+#include <algorithm>
+#include <cmath>
+
+#include "plots/distribution_data.h"
+#include "plots/diversity_data.h"
+#include "plots/footstep_data.h"
+#include "plots/likelihood_data.h"
+#include "plots/statistics_data.h"
+#include <gtest/gtest.h>
+
+#include "motion/walker.h"
+#include "stats/diversity.h"
+#include "stats/sample_distance.h"
+
+namespace marey::gui {
+namespace {
+
+MotionGroup groupOf(int id, const std::string& name, int colour, std::vector<ClipPtr> clips) {
+  MotionGroup group{
+      .id = id, .name = name, .system = colour < 0 ? "" : name, .colourIndex = colour};
+  for (ClipPtr& clip : clips) group.motions.push_back({.clip = std::move(clip), .score = {}});
+  return group;
+}
+
+ClipPtr walkerClip(uint64_t seed, double seconds = 4.0) {
+  return std::make_shared<const Clip>(walkerDataSet(1, seconds, seed, 20.0).front().clip);
+}
+
+std::vector<MotionGroup> twoGroups() {
+  return {groupOf(1, "Natural", -1, {walkerClip(1), walkerClip(2), walkerClip(3)}),
+          groupOf(2, "MG", 0, {walkerClip(4, 3.0), walkerClip(5, 3.0)})};
+}
+
+TEST(MotionSets, TakeVisibleSamplesAndAllNaturalClips) {
+  auto groups = twoGroups();
+  groups[0].motions[1].visible = false;
+  groups[1].motions[0].visible = false;
+  std::swap(groups[0], groups[1]);
+  const auto sets = motionSets(groups);
+  ASSERT_EQ(sets.size(), 2U);
+  EXPECT_TRUE(sets[0].natural);
+  EXPECT_EQ(sets[0].clips.size(), 3U);
+  EXPECT_EQ(sets[1].ids, (std::vector<MotionId>{{2, 1}}));
+  groups[0].motions[1].visible = false;
+  EXPECT_EQ(motionSets(groups).size(), 1U) << "a group of which nothing is visible is no set";
+}
+
+TEST(MotionSets, ARangeCutsClipsAndWantedPathsAlike) {
+  auto groups = twoGroups();
+  groups[1].wanted.resize(60);
+  const auto sets = motionSets(groups);
+  const ClipsInRange cut = clipsIn(sets[1], TimeRange{0.5, 1.5});
+  ASSERT_EQ(cut.clips.size(), 2U);
+  const int frames = static_cast<int>(std::lround(sets[1].clips[0]->fps)) + 1;
+  EXPECT_EQ(cut.clips[0].frameCount(), frames);
+  EXPECT_EQ(cut.clips[0].at(0, 0), sets[1].clips[0]->at(frames / 2, 0));
+  EXPECT_EQ(cut.wanted[0].size(), static_cast<size_t>(frames));
+  EXPECT_TRUE(clipsIn(sets[1], TimeRange{50.0, 60.0}).clips.empty());
+}
+
+TEST(Bands, AreQuantilesOfThoseWhoHaveAValue) {
+  const Band band = bandOf({{1, 10, NAN}, {3, NAN, NAN}, {2, 20, NAN, 7}});
+  EXPECT_EQ(band.step, (std::vector<double>{0, 1, 3}));
+  EXPECT_EQ(band.median, (std::vector<double>{2, 15, 7}));
+  EXPECT_NEAR(band.low[0], 1.1, 1e-12);
+  EXPECT_NEAR(band.high[0], 2.9, 1e-12);
+}
+
+std::vector<MotionGroup> scoredGroups() {
+  auto groups = twoGroups();
+  groups[1].motions[0].score = ClipScore{.firstFrame = 2, .loglikNats = {5, 6, -40, 7}};
+  groups[1].motions[1].score = ClipScore{.firstFrame = 2, .loglikNats = {5, 4, 3, 2}};
+  return groups;
+}
+
+TEST(Likelihoods, WorstFrameIsThatOfASampleInsideTheRange) {
+  const std::vector<ClipScore> natural{{.firstFrame = 1, .loglikNats = {-99}}, {}, {}};
+  const auto groups = likelihoodGroups(
+      scoredGroups(), {"MG"}, [&](const std::string&) { return &natural; }, 10.0);
+  ASSERT_EQ(groups.size(), 2U);
+  EXPECT_EQ(groups[0].runs.size(), 1U) << "clips that were too short to score";
+  const auto worst = worstFrame(groups, std::nullopt);
+  ASSERT_TRUE(worst);
+  EXPECT_EQ(worst->id, (MotionId{2, 0}));
+  EXPECT_DOUBLE_EQ(worst->timeS, 4.0 / groups[1].fps);
+  const auto early = worstFrame(groups, TimeRange{0.0, 3.0 / groups[1].fps});
+  EXPECT_EQ(early->id, (MotionId{2, 1}));
+}
+
+TEST(Likelihoods, CurvesKnowTheirMotions) {
+  const auto groups = likelihoodGroups(
+      scoredGroups(), {"MG"}, [](const std::string&) { return nullptr; }, 20.0);
+  const LinkedGrid median = likelihoodGrid(groups, {}, false),
+                   every = likelihoodGrid(groups, {{"MG", 1.5}}, true);
+  EXPECT_EQ(median.motions.at({0, 1, -1}), (std::vector<MotionId>{{2, 0}, {2, 1}}));
+  EXPECT_EQ(median.grid.charts[0].series[1].y, (std::vector<double>{5, 5, -18.5, 4.5}));
+  EXPECT_EQ(every.motions.at({0, 0, 1}), (std::vector<MotionId>{{2, 1}}));
+  EXPECT_TRUE(std::isnan(every.grid.charts[0].series[0].cloud->y[0])) << "history is not scored";
+  EXPECT_NO_THROW(render::framesOf(every.grid, {400, 300}));
+}
+
+TEST(Likelihoods, RunningMeanIsCentredAndShorterAtTheEnds) {
+  EXPECT_EQ(runningMean({0, 3, 6, 9}, 3), (std::vector<double>{1.5, 3, 6, 7.5}));
+  EXPECT_EQ(runningMean({1, 2}, 1), (std::vector<double>{1, 2}));
+}
+
+TEST(Footsteps, AllFeetAreTheCurveOfTheStatistics) {
+  const auto sets = motionSets(twoGroups());
+  const stats::FootstepOptions options{.feet = stats::feetOf(*sets[0].clips[0]->skeleton)};
+  Progress progress;
+  const auto results = footstepResults(sets, std::nullopt, options, progress);
+  const auto expected = stats::footstepCurve(clipsIn(sets[0], std::nullopt).clips, options);
+  EXPECT_EQ(results[0].all.count, expected.count);
+  EXPECT_DOUBLE_EQ(results[0].all.v95CmS, expected.v95CmS);
+  EXPECT_DOUBLE_EQ(results[0].all.durationStdS, expected.durationStdS);
+  EXPECT_TRUE(perMinute(results));
+  EXPECT_EQ(footstepGrid(results).grid.charts[0].y.label, "footsteps per minute");
+  const auto rows = footstepRows(results, {"left", "right"});
+  ASSERT_EQ(rows.size(), 6U);
+  EXPECT_NEAR(rows[0].stepsPerMinute, rows[0].steps / (3 * 4.0 / 60.0),
+              0.05 * rows[0].stepsPerMinute);
+}
+
+TEST(Diversity, MeanOverTimeIsThatOfPairDistances) {
+  const auto sets = motionSets(twoGroups());
+  Progress progress;
+  const auto curves = diversityCurves(sets, progress);
+  ASSERT_EQ(curves.size(), 2U);
+  const double pair = stats::pairDistances(clipsIn(sets[1], std::nullopt).clips, 100000)[1];
+  EXPECT_NEAR(meanInRange(curves[1], std::nullopt), 100.0 * pair, 1e-6);
+}
+
+TEST(Distributions, DistanceOfASetToItselfIsZeroAndElsewhereThatOfTheStatistics) {
+  auto groups = twoGroups();
+  groups.push_back(
+      groupOf(3, "Copy", 1,
+              {groups[0].motions[0].clip, groups[0].motions[1].clip, groups[0].motions[2].clip}));
+  const auto sets = motionSets(groups);
+  Progress progress;
+  const auto result = distributionResult(
+      sets, {.quantity = stats::Quantity::Height, .joints = {0, 3}, .range = {}}, progress);
+  ASSERT_EQ(result.sets.size(), 3U);
+  EXPECT_TRUE(result.sets[0].distance.empty());
+  EXPECT_NEAR(result.sets[2].distance[3], 0.0, 1e-12);
+  EXPECT_NEAR(result.sets[1].distance[3],
+              stats::wasserstein1(result.sets[1].values[1].pooled, result.sets[0].values[1].pooled),
+              1e-9);
+  EXPECT_EQ(distributionRows(result).size(), 6U);
+  for (const auto view :
+       {DistributionView::Density, DistributionView::Violin, DistributionView::Envelope}) {
+    const LinkedGrid grid = distributionGrid(result, view);
+    EXPECT_EQ(grid.grid.charts.size(), 2U);
+    EXPECT_NO_THROW(render::drawImage(grid.grid, {600, 300}));
+  }
+}
+
+TEST(Statistics, TableHasSystemsBesideNaturalMotionAndKnowsItsInput) {
+  const auto groups = twoGroups();
+  StatisticsInput input{.sets = motionSets(groups),
+                        .range = {},
+                        .feet = stats::feetOf(*groups[0].motions[0].clip->skeleton)};
+  Progress progress;
+  const StatisticsTable table = statisticsTable(input, progress);
+  EXPECT_EQ(table.systems, (std::vector<std::string>{"MG"}));
+  EXPECT_GT(table.rows.size(), 5U);
+  EXPECT_TRUE(table.rows[0].systems[0] && table.rows[0].natural);
+  EXPECT_EQ(input.text(), "Natural (3 motions), MG (2 motions)");
+  StatisticsInput later = input;
+  EXPECT_TRUE(table.input.sameAs(later));
+  later.range = TimeRange{0.0, 1.0};
+  EXPECT_FALSE(table.input.sameAs(later));
+  const std::string text = statisticsText(table, '\t');
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), static_cast<long>(table.rows.size()) + 1);
+  input.sets.pop_back();
+  const StatisticsTable alone = statisticsTable(input, progress);
+  EXPECT_TRUE(alone.systems.empty());
+  EXPECT_TRUE(alone.rows[0].natural);
+}
+
+}  // namespace
+}  // namespace marey::gui

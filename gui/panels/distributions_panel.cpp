@@ -1,0 +1,217 @@
+#include "panels/distributions_panel.h"
+
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QVBoxLayout>
+#include <algorithm>
+
+#include "panels/plot_panel.h"
+#include "panels/value_table.h"
+#include "plots/body_map.h"
+#include "plots/distribution_data.h"
+
+namespace marey::gui {
+namespace {
+
+class DistributionsPanel : public PlotPanel {
+ public:
+  DistributionsPanel(Workspace& workspace, QWidget* parent)
+      : PlotPanel(workspace, QStringLiteral("distributions"), false, parent) {
+    m_quantity = combo(QStringLiteral("distributionsQuantity"));
+    for (const stats::Quantity quantity : stats::allQuantities())
+      m_quantity->addItem(QString::fromStdString(stats::textOf(quantity).name));
+    m_view = combo(QStringLiteral("distributionsView"));
+    m_view->addItems({tr("Density"), tr("Violin"), tr("Over time")});
+    tools()->addStretch(1);
+    tools()->addWidget(new QLabel(tr("Body map:"), this));
+    m_mapSet = combo(QStringLiteral("distributionsMapSet"));
+    m_mapSet->setToolTip(tr("Whose distance to natural motion the body map shows"));
+    layOut();
+    connect(m_quantity, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+            [this] { refreshSoon(); });
+    connect(m_view, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+            [this] { redraw(); });
+    connect(m_mapSet, QOverload<int>::of(&QComboBox::activated), this, [this] { showMap(); });
+    connect(m_joints, &QListWidget::itemSelectionChanged, this, [this] { jointsPicked(); });
+    connect(m_map, &BodyMap::jointClicked, this, [this](int joint) {
+      Selection next = this->workspace().selection();
+      next.joint = joint;
+      this->workspace().select(std::move(next));
+    });
+    connect(m_table, &QTableWidget::cellClicked, this, [this](int row, int) {
+      const auto key = static_cast<size_t>(m_table->keyOf(row));
+      if (key < m_rows.size()) selectMotions(m_rows[key].ids, false);
+    });
+  }
+
+ protected:
+  void refresh() override {
+    const auto sets = motionSets(workspace().groups());
+    if (sets.empty())
+      return showHint(
+          tr("No motion is visible: open natural clips or sample a path to see how "
+             "its joints move."));
+    fillJoints(sets.front().clips.front()->skeleton);
+    DistributionQuery query{
+        .quantity = quantity(), .joints = chosenJoints(), .range = workspace().range()};
+    compute<DistributionResult>(
+        tr("Collecting joint samples"),
+        [sets, query](Progress& progress) { return distributionResult(sets, query, progress); },
+        [this](DistributionResult& result) {
+          m_result = std::move(result);
+          show();
+        });
+  }
+
+  void rangeMoved() override { refreshSoon(); }
+
+  void selectionMoved() override {
+    const auto joint = workspace().selection().joint;
+    m_map->setJoint(joint);
+    if (joint && *joint < m_joints->count() && !m_joints->item(*joint)->isSelected()) {
+      m_following = true;
+      m_joints->clearSelection();
+      m_joints->item(*joint)->setSelected(true);
+      m_joints->scrollToItem(m_joints->item(*joint));
+      m_following = false;
+      refreshSoon();
+    }
+    showHighlights();
+  }
+
+ private:
+  QComboBox* combo(const QString& name) {
+    auto* made = new QComboBox(this);
+    made->setObjectName(name);
+    made->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+    tools()->addWidget(made);
+    return made;
+  }
+
+  void layOut() {
+    m_joints = new QListWidget(this);
+    m_joints->setObjectName(QStringLiteral("distributionsJoints"));
+    m_joints->setSelectionMode(QAbstractItemView::ExtendedSelection);
+    m_joints->setMaximumWidth(120);
+    m_joints->setToolTip(tr("Joints to plot; several with Ctrl or Shift"));
+    m_map = new BodyMap(this);
+    m_map->setObjectName(QStringLiteral("distributionsBodyMap"));
+    m_map->setMaximumWidth(240);
+    m_table = new ValueTable(this);
+    m_table->setObjectName(QStringLiteral("distributionsTable"));
+    m_table->setMaximumHeight(150);
+    m_table->setToolTip(tr("W1: 1-Wasserstein distance to natural motion"));
+    auto* row = new QHBoxLayout;
+    content()->removeWidget(chart());
+    row->addWidget(m_joints);
+    row->addWidget(chart(), 1);
+    row->addWidget(m_map);
+    content()->addLayout(row, 1);
+    content()->addWidget(m_table);
+  }
+
+  stats::Quantity quantity() const {
+    return stats::allQuantities()[static_cast<size_t>(std::max(0, m_quantity->currentIndex()))];
+  }
+
+  void fillJoints(const std::shared_ptr<const Skeleton>& skeleton) {
+    QStringList names;
+    for (const std::string& name : skeleton->names) names << QString::fromStdString(name);
+    if (names == m_names) return;
+    m_names = names;
+    m_following = true;
+    m_joints->clear();
+    m_joints->addItems(names);
+    const auto feet = workspace().feet();
+    const int first = workspace().selection().joint.value_or(feet.empty() ? 0 : feet.front());
+    if (first < m_joints->count()) m_joints->item(first)->setSelected(true);
+    m_following = false;
+  }
+
+  std::vector<int> chosenJoints() const {
+    std::vector<int> joints;
+    for (int i = 0; i < m_joints->count(); ++i)
+      if (m_joints->item(i)->isSelected()) joints.push_back(i);
+    return joints;
+  }
+
+  void jointsPicked() {
+    if (m_following) return;
+    const std::vector<int> joints = chosenJoints();
+    if (joints.size() == 1) {
+      Selection next = workspace().selection();
+      next.joint = joints.front();
+      workspace().select(std::move(next));
+    }
+    refreshSoon();
+  }
+
+  void show() {
+    if (m_result->sets.empty())
+      return showHint(tr("No motion has frames inside the marked range."));
+    const QString before = m_mapSet->currentText();
+    m_mapSet->clear();
+    for (const DistributionSet& set : m_result->sets)
+      if (!set.look.natural) m_mapSet->addItem(QString::fromStdString(set.look.name));
+    m_mapSet->setCurrentIndex(std::max(0, m_mapSet->findText(before)));
+    redraw();
+    showMap();
+    fillTable();
+  }
+
+  void redraw() {
+    if (!m_result) return;
+    const bool overTime = m_view->currentIndex() == 2;
+    followTime(overTime);
+    showGrid(distributionGrid(*m_result, static_cast<DistributionView>(m_view->currentIndex())));
+  }
+
+  void showMap() {
+    const stats::QuantityText& text = stats::textOf(m_result->query.quantity);
+    BodyMapData data{
+        .skeleton = m_result->skeleton, .pose = m_result->meanPose, .values = {}, .label = {}};
+    for (const DistributionSet& set : m_result->sets)
+      if (!set.look.natural && QString::fromStdString(set.look.name) == m_mapSet->currentText())
+        data.values = set.distance;
+    data.label = data.values.empty() ? tr("Click picks a joint")
+                                     : tr("W1 of %1 [%2]")
+                                           .arg(QString::fromStdString(text.name),
+                                                QString::fromStdString(text.unit));
+    m_map->setToolTip(tr("1-Wasserstein distance to natural motion at each joint"));
+    m_map->setData(std::move(data));
+    m_map->setJoint(workspace().selection().joint);
+  }
+
+  void fillTable() {
+    const QString unit = QString::fromStdString(stats::textOf(m_result->query.quantity).unit);
+    m_rows = distributionRows(*m_result);
+    std::vector<std::vector<ValueCell>> cells;
+    for (const DistributionRow& row : m_rows)
+      cells.push_back({{QString::fromStdString(row.joint), {}, {}},
+                       {QString::fromStdString(row.set), {}, {}},
+                       numberCell(row.mean, 2),
+                       numberCell(row.deviation, 2),
+                       numberCell(row.distance, 2)});
+    m_table->setRows({tr("joint"), tr("motions"), tr("mean [%1]").arg(unit),
+                      tr("std [%1]").arg(unit), tr("W1 to natural [%1]").arg(unit)},
+                     cells);
+  }
+
+  QComboBox *m_quantity = nullptr, *m_view = nullptr, *m_mapSet = nullptr;
+  QListWidget* m_joints = nullptr;
+  BodyMap* m_map = nullptr;
+  ValueTable* m_table = nullptr;
+  QStringList m_names;
+  std::optional<DistributionResult> m_result;
+  std::vector<DistributionRow> m_rows;
+  bool m_following = false;  ///< the list is being set, not used
+};
+}  // namespace
+
+QWidget* makeDistributionsPanel(Workspace& workspace, QWidget* parent) {
+  return new DistributionsPanel(workspace, parent);
+}
+
+}  // namespace marey::gui

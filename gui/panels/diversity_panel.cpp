@@ -1,0 +1,73 @@
+#include "panels/diversity_panel.h"
+
+#include <QLabel>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+
+#include "panels/plot_panel.h"
+#include "plots/diversity_data.h"
+
+namespace marey::gui {
+namespace {
+
+class DiversityPanel : public PlotPanel {
+ public:
+  DiversityPanel(Workspace& workspace, QWidget* parent)
+      : PlotPanel(workspace, QStringLiteral("diversity"), true, parent) {
+    m_means = new QLabel(this);
+    m_means->setObjectName(QStringLiteral("diversityMeans"));
+    m_means->setWordWrap(true);
+    m_means->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    content()->addWidget(m_means);
+    chart()->setToolTip(
+        tr("Root mean square joint distance in the root frame, mean over pairs of motions at equal "
+           "time from the start. Natural pairs follow different paths."));
+  }
+
+ protected:
+  void refresh() override {
+    const auto sets = motionSets(workspace().groups());
+    const bool pairs = std::any_of(sets.begin(), sets.end(),
+                                   [](const MotionSet& s) { return s.clips.size() > 1; });
+    if (!pairs)
+      return showHint(
+          tr("Diversity compares pairs: show at least two motions of a group, for "
+             "example by sampling a path."));
+    compute<std::vector<DiversityCurve>>(
+        tr("Comparing motions"),
+        [sets](Progress& progress) { return diversityCurves(sets, progress); },
+        [this](std::vector<DiversityCurve>& curves) {
+          m_curves = std::move(curves);
+          showGrid(diversityGrid(m_curves));
+          showMeans();
+        });
+  }
+
+  void rangeMoved() override { showMeans(); }
+
+ private:
+  void showMeans() {
+    QStringList parts;
+    for (const DiversityCurve& curve : m_curves) {
+      const double mean = meanInRange(curve, workspace().range());
+      if (std::isfinite(mean))
+        parts << tr("%1 %2 cm (%3 motions)")
+                     .arg(QString::fromStdString(curve.look.name))
+                     .arg(mean, 0, 'f', 1)
+                     .arg(curve.compared);
+    }
+    const QString where = workspace().range() ? tr("Mean in the range: ") : tr("Mean: ");
+    m_means->setText(parts.isEmpty() ? QString() : where + parts.join(QStringLiteral("; ")));
+  }
+
+  QLabel* m_means = nullptr;
+  std::vector<DiversityCurve> m_curves;
+};
+}  // namespace
+
+QWidget* makeDiversityPanel(Workspace& workspace, QWidget* parent) {
+  return new DiversityPanel(workspace, parent);
+}
+
+}  // namespace marey::gui

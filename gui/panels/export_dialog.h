@@ -1,0 +1,11 @@
+// Asks how to export motions, runs the export and shows what came of it.
+#pragma once
+
+#include "shell/workspace.h"
+
+namespace marey::gui {
+
+/// The selected motions, or all visible ones. Not modal; deleted when closed.
+void showExportDialog(Workspace& workspace, QWidget* parent);
+
+}  // namespace marey::gui

@@ -1,0 +1,43 @@
+// Editing the current path on the floor of the 3D view: discs that are dragged.
+#pragma once
+
+#include <QPainter>
+#include <optional>
+#include <vector>
+
+#include "panels/current_path.h"
+#include "panels/paint_style.h"
+
+#include "render/live_scene.h"
+
+namespace marey::gui {
+
+/// Positions are in pixels of a view `size`.
+class FloorPathTool {
+ public:
+  FloorPathTool(CurrentPath& path, const render::LiveScene& scene) : m_path(path), m_scene(scene) {}
+
+  void setActive(bool active);
+  bool active() const { return m_active; }
+  std::optional<size_t> chosen() const { return m_chosen; }
+
+  /// Takes hold of the way-point under the mouse; false where there is none.
+  bool press(const QPointF& at, const QSize& size);
+  void drag(const QPointF& to, const QSize& size);
+  void release() { m_held = false; }
+  bool held() const { return m_held; }
+  bool add(const QPointF& at, const QSize& size);
+  void removeChosen();
+  void paint(QPainter& painter, const QSize& size, const Inks& inks) const;
+
+ private:
+  std::optional<size_t> wayPointAt(const QPointF& at, const QSize& size) const;
+  QPolygonF disc(const WayPoint& point, double radiusM, const QSize& size) const;
+
+  CurrentPath& m_path;
+  const render::LiveScene& m_scene;
+  bool m_active = false, m_held = false, m_moved = false;
+  std::optional<size_t> m_chosen;
+};
+
+}  // namespace marey::gui

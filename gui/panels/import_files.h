@@ -1,0 +1,32 @@
+// What an import does with files, without widgets.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "base/job.h"
+#include "io/doctor.h"
+
+namespace marey::gui {
+
+struct ImportFile {
+  std::string path;
+  std::string source;  ///< the file, folder or list that was given and holds it
+  io::ReadOptions options;
+  std::vector<io::DoctorReport> reports;  ///< one per clip; empty: not examined yet
+  bool wanted = true;
+
+  /// A document names files only, so what their readers should be told has to be carried out.
+  bool overridden() const;
+  bool readable() const;
+};
+
+/// Files of the given files, folders and lists. Throws as io::expandInputs does.
+std::vector<ImportFile> importFiles(const std::vector<std::string>& given);
+/// Reads overridden files as they should be read and writes their clips as NPZ into `folder`, all
+/// or none. Returns the sources to add to a document: written files, files as they are, and whole
+/// folders and lists where each of their files is taken as it is.
+std::vector<std::string> convertOverridden(const std::vector<ImportFile>& files,
+                                           const std::filesystem::path& folder, Progress& progress);
+
+}  // namespace marey::gui

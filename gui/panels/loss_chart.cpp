@@ -1,0 +1,183 @@
+#include "panels/loss_chart.h"
+
+#include <QHelpEvent>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QPainterPath>
+#include <QToolTip>
+#include <algorithm>
+#include <cmath>
+
+#include "panels/paint_style.h"
+
+namespace marey::gui {
+namespace {
+constexpr double kLeft = 56.0, kRight = 12.0, kTop = 26.0, kBottom = 34.0;
+constexpr double kNear = 6.0;  ///< pixels
+/// The first steps are far off; the curves show where the rest happens.
+constexpr double kLowQuantile = 0.0, kHighQuantile = 0.97;
+}  // namespace
+
+LossChart::LossChart(QWidget* parent) : QWidget(parent) {
+  setMinimumSize(180, 130);
+  setFont(readableFont(font()));
+  setAccessibleName(tr("Loss over training steps"));
+}
+
+void LossChart::setRun(TrainingRun run) {
+  m_run = std::move(run);
+  update();
+}
+
+void LossChart::setCurrent(int checkpoint) {
+  m_current = checkpoint;
+  update();
+}
+
+QRectF LossChart::plot() const {
+  return QRectF(rect()).adjusted(kLeft, kTop, -kRight, -kBottom);
+}
+
+LossChart::Axis LossChart::lossAxis() const {
+  std::vector<double> values;
+  for (const LossRow& row : m_run.rows)
+    for (const double value : {row.train, row.valid, row.test})
+      if (std::isfinite(value)) values.push_back(value);
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) {
+    return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
+  };
+  const double low = at(kLowQuantile), high = at(kHighQuantile);
+  const double room = std::max(1e-6, 0.05 * (high - low));
+  return {low - room, high + room};
+}
+
+double LossChart::xOf(int64_t step) const {
+  const double last =
+      m_run.rows.empty() ? 1.0 : static_cast<double>(std::max<int64_t>(1, m_run.rows.back().step));
+  return plot().left() + plot().width() * std::min(1.0, static_cast<double>(step) / last);
+}
+
+void LossChart::paintAxes(QPainter& painter, const Axis& axis) const {
+  const Inks inks = inksOf(palette());
+  const QRectF area = plot();
+  constexpr int kTicks = 4;
+  for (int i = 0; i <= kTicks; ++i) {
+    const double share = static_cast<double>(i) / kTicks;
+    const double y = area.bottom() - share * area.height();
+    painter.setPen(inks.grid);
+    painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y));
+    painter.setPen(inks.faintText);
+    painter.drawText(QRectF(0, y - 10, kLeft - 6, 20), Qt::AlignRight | Qt::AlignVCenter,
+                     QString::number(axis.low + share * (axis.high - axis.low), 'f', 0));
+    const double step = share * static_cast<double>(m_run.rows.back().step);
+    const double x = area.left() + share * area.width();
+    const Qt::Alignment side = i == kTicks ? Qt::AlignRight : Qt::AlignHCenter;
+    painter.drawText(QRectF(x - (i == kTicks ? 80 : 40), area.bottom() + 4, 80, 16),
+                     side | Qt::AlignTop, QString::number(step, 'f', 0));
+  }
+  painter.drawText(QRectF(area.left(), area.bottom() + 16, area.width(), 18), Qt::AlignCenter,
+                   tr("training steps"));
+}
+
+void LossChart::paintCurve(QPainter& painter, const Axis& axis, double LossRow::*value,
+                           const QColor& ink) const {
+  const QRectF area = plot();
+  QPainterPath path;
+  bool down = false;
+  for (const LossRow& row : m_run.rows) {
+    if (!std::isfinite(row.*value)) {
+      down = false;
+      continue;
+    }
+    const QPointF at(xOf(row.step), area.bottom() - area.height() * (row.*value - axis.low) /
+                                                        (axis.high - axis.low));
+    if (down)
+      path.lineTo(at);
+    else
+      path.moveTo(at);
+    down = true;
+  }
+  painter.save();
+  painter.setClipRect(area.adjusted(-1, -1, 1, 1));
+  painter.strokePath(path, QPen(ink, 2));
+  painter.restore();
+}
+
+void LossChart::paintCheckpoints(QPainter& painter) const {
+  const Inks inks = inksOf(palette());
+  const QRectF area = plot();
+  for (size_t i = 0; i < m_run.checkpoints.size(); ++i) {
+    const double x = xOf(m_run.checkpoints[i].step);
+    const bool current = static_cast<int>(i) == m_current;
+    painter.setPen(QPen(current ? inks.accent : inks.faintText, current ? 2 : 1, Qt::DashLine));
+    painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()));
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(current ? inks.accent : inks.faintText);
+    painter.drawEllipse(QPointF(x, area.bottom()), 4, 4);
+  }
+}
+
+void LossChart::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const Inks inks = inksOf(palette());
+  painter.fillRect(rect(), inks.background);
+  if (m_run.rows.empty()) {
+    drawHint(painter, rect(), tr("Choose the folder of a training run to see its loss."),
+             inks.faintText);
+    return;
+  }
+  const Axis axis = lossAxis();
+  paintAxes(painter, axis);
+  paintCheckpoints(painter);
+  const bool dark = isDark(palette());
+  const std::tuple<QString, double LossRow::*, QColor> curves[] = {
+      {tr("training"), &LossRow::train, inks.faintText},
+      {tr("validation"), &LossRow::valid, shownColour(render::colourOf(0), dark)},
+      {tr("test"), &LossRow::test, shownColour(render::colourOf(1), dark)}};
+  double x = plot().left();
+  painter.setPen(inks.text);
+  const QString unit = tr("Bits per frame:");
+  painter.drawText(QPointF(x, kTop - 10), unit);
+  x += painter.fontMetrics().horizontalAdvance(unit) + 10;
+  for (const auto& [name, value, ink] : curves) {
+    paintCurve(painter, axis, value, ink);
+    painter.setPen(ink);
+    painter.drawText(QPointF(x, kTop - 10), name);
+    x += painter.fontMetrics().horizontalAdvance(name) + 14;
+  }
+}
+
+int LossChart::checkpointAt(const QPoint& at) const {
+  int best = -1;
+  double nearest = kNear;
+  for (size_t i = 0; i < m_run.checkpoints.size(); ++i) {
+    const double away = std::abs(xOf(m_run.checkpoints[i].step) - at.x());
+    if (away <= nearest) {
+      nearest = away;
+      best = static_cast<int>(i);
+    }
+  }
+  return best;
+}
+
+void LossChart::mousePressEvent(QMouseEvent* event) {
+  const int index = checkpointAt(event->pos());
+  if (index >= 0) Q_EMIT checkpointClicked(index);
+}
+
+bool LossChart::event(QEvent* event) {
+  if (event->type() != QEvent::ToolTip) return QWidget::event(event);
+  const auto* help = static_cast<QHelpEvent*>(event);
+  const int index = checkpointAt(help->pos());
+  if (index >= 0)
+    QToolTip::showText(help->globalPos(),
+                       QString::fromStdString(m_run.checkpoints[static_cast<size_t>(index)].name));
+  else
+    QToolTip::hideText();
+  return true;
+}
+
+}  // namespace marey::gui

@@ -1,0 +1,44 @@
+// The loss of a training run over its steps, with its checkpoints.
+#pragma once
+
+#include <QWidget>
+
+#include "panels/training_run.h"
+
+namespace marey::gui {
+
+class LossChart : public QWidget {
+  Q_OBJECT
+ public:
+  explicit LossChart(QWidget* parent = nullptr);
+  void setRun(TrainingRun run);
+  /// Index of the checkpoint that is lit up; -1: none.
+  void setCurrent(int checkpoint);
+
+ Q_SIGNALS:
+  void checkpointClicked(int index);
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  bool event(QEvent* event) override;
+
+ private:
+  struct Axis {
+    double low = 0.0, high = 1.0;
+  };
+  QRectF plot() const;
+  Axis lossAxis() const;
+  double xOf(int64_t step) const;
+  void paintAxes(QPainter& painter, const Axis& axis) const;
+  void paintCurve(QPainter& painter, const Axis& axis, double LossRow::*value,
+                  const QColor& ink) const;
+  void paintCheckpoints(QPainter& painter) const;
+  /// The checkpoint near a place, or -1.
+  int checkpointAt(const QPoint& at) const;
+
+  TrainingRun m_run;
+  int m_current = -1;
+};
+
+}  // namespace marey::gui

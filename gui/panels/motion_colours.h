@@ -1,0 +1,46 @@
+// Colours of motions by a value of every frame, on a scale that colour-blind people read too.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "model/scorer.h"
+#include "render/colours.h"
+
+namespace marey::gui {
+
+enum class ColourBy { System, Sample, Likelihood, Speed };
+
+/// The ends of a colour scale.
+struct ScaleRange {
+  double low = 0.0, high = 1.0;
+  double share(double value) const { return (value - low) / (high - low); }
+};
+
+/// Viridis: rises evenly in lightness for every kind of vision. 0 is dark blue, 1 yellow; values
+/// outside take the colour of the end.
+render::Colour scaleColour(double share);
+/// 5 to 95 % of the finite values, never empty; none where no value is finite.
+std::optional<ScaleRange> middleRange(std::vector<double> values);
+/// NaN becomes grey.
+std::vector<render::Colour> coloursOf(const std::vector<double>& values, const ScaleRange& range);
+
+/// Nats at every frame of the clip, from a score at `modelFps`; NaN where nothing was scored.
+std::vector<double> likelihoodPerFrame(const Clip& clip, const ClipScore& score, double modelFps);
+
+/// Floor speeds of roots, m/s at every frame, worked out once per clip.
+class RootSpeeds {
+ public:
+  const std::vector<double>& of(const std::shared_ptr<const Clip>& clip);
+
+ private:
+  struct Entry {
+    std::shared_ptr<const Clip> clip;  ///< kept, so that its address stays its own
+    std::vector<double> speeds;
+  };
+  std::map<const Clip*, Entry> m_entries;
+};
+
+}  // namespace marey::gui

@@ -1,0 +1,126 @@
+#include "panels/path_panel.h"
+
+#include <QAction>
+#include <QLabel>
+#include <QSplitter>
+#include <QVBoxLayout>
+#include <numbers>
+
+#include "panels/natural_pace.h"
+#include "panels/pace_plot.h"
+#include "panels/path_list.h"
+#include "panels/path_view.h"
+#include "panels/way_point_form.h"
+
+namespace marey::gui {
+namespace {
+
+class PathPanel : public QWidget {
+ public:
+  PathPanel(Workspace& workspace, QWidget* parent)
+      : QWidget(parent),
+        m_workspace(workspace),
+        m_path(new CurrentPath(workspace, this)),
+        m_natural(new NaturalPace(workspace, this)) {
+    setObjectName(QStringLiteral("pathPanel"));
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(kMargin, kMargin, kMargin, kMargin);
+    layout->setSpacing(kSpacing);
+    layout->addWidget(new PathList(workspace, *m_path, this));
+    m_problem = new QLabel(this);
+    m_problem->setObjectName(QStringLiteral("pathProblem"));
+    m_problem->setWordWrap(true);
+    layout->addWidget(m_problem);
+    m_view = new PathView(workspace, *m_path, this);
+    auto* splitter = new QSplitter(Qt::Vertical, this);
+    splitter->setChildrenCollapsible(false);
+    splitter->addWidget(m_view);
+    splitter->addWidget(buildLower());
+    splitter->setStretchFactor(0, 1);
+    layout->addWidget(splitter, 1);
+    addKeys();
+    connect(m_path, &CurrentPath::changed, this, [this] { refresh(); });
+    connect(m_natural, &NaturalPace::changed, this, [this] { refresh(); });
+    connect(&workspace, &Workspace::timeChanged, this, [this] { refreshTime(); });
+    refresh();
+  }
+
+ protected:
+  void changeEvent(QEvent* event) override {
+    QWidget::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange && m_problem) tintProblem();
+  }
+
+ private:
+  QWidget* buildLower() {
+    auto* lower = new QWidget(this);
+    auto* layout = new QVBoxLayout(lower);
+    layout->setContentsMargins(0, kSpacing, 0, 0);
+    layout->setSpacing(kSpacing);
+    layout->addWidget(new WayPointForm(*m_path, *m_view, lower));
+    m_speed = new PacePlot(QStringLiteral("pathSpeedPlot"), tr("Speed (m/s)"), 1.0, lower);
+    m_turn = new PacePlot(QStringLiteral("pathTurnPlot"), tr("Turn rate (°/s)"),
+                          180.0 / std::numbers::pi, lower);
+    layout->addWidget(m_speed, 1);
+    layout->addWidget(m_turn, 1);
+    return lower;
+  }
+
+  void addKeys() {
+    const auto key = [this](const char* name, const QString& text, const QList<QKeySequence>& keys,
+                            const std::function<void()>& run) {
+      auto* action = new QAction(text, this);
+      action->setObjectName(QLatin1String(name));
+      action->setShortcuts(keys);
+      action->setShortcutContext(Qt::WidgetShortcut);
+      connect(action, &QAction::triggered, m_view, run);
+      m_view->addAction(action);
+    };
+    key("pathRemoveWayPoint", tr("Remove way-point"), {Qt::Key_Delete, Qt::Key_Backspace},
+        [this] { m_view->removeChosen(); });
+    key("pathFit", tr("Fit path"), {Qt::Key_F, Qt::Key_X}, [this] { m_view->fit(); });
+  }
+
+  void tintProblem() {
+    QPalette inks = m_problem->palette();
+    const QColor wanted = inksOf(palette()).error;
+    if (inks.color(QPalette::WindowText) == wanted) return;
+    inks.setColor(QPalette::WindowText, wanted);
+    m_problem->setPalette(inks);
+  }
+
+  void refresh() {
+    const PathCurve& curve = m_path->curve();
+    const auto& natural = m_natural->range();
+    m_problem->setText(m_path->problem());
+    m_problem->setVisible(!m_path->problem().isEmpty());
+    tintProblem();
+    m_view->setNatural(natural);
+    m_speed->setValues(curve.speedMS, curve.fps);
+    m_turn->setValues(curve.turnRadS, curve.fps);
+    m_speed->setNatural(natural ? std::optional(natural->speedMS) : std::nullopt);
+    m_turn->setNatural(natural ? std::optional(natural->turnRadS) : std::nullopt);
+    refreshTime();
+  }
+
+  void refreshTime() {
+    const double time = m_workspace.duration() > 0.0 ? m_workspace.time() : -1.0;
+    m_speed->setTime(time);
+    m_turn->setTime(time);
+  }
+
+  Workspace& m_workspace;
+  CurrentPath* m_path;
+  NaturalPace* m_natural;
+  PathView* m_view = nullptr;
+  PacePlot *m_speed = nullptr, *m_turn = nullptr;
+  QLabel* m_problem = nullptr;
+};
+
+}  // namespace
+
+QWidget* makePathPanel(Workspace& workspace, QWidget* parent) {
+  return new PathPanel(workspace, parent);
+}
+
+}  // namespace marey::gui

@@ -1,0 +1,185 @@
+#include "panels/plot_panel.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QShowEvent>
+#include <QStackedLayout>
+#include <algorithm>
+
+#include "plots/plot_recipe.h"
+
+#include "base/error.h"
+
+namespace marey::gui {
+namespace {
+constexpr int kDebounceMs = 120;
+/// More curves over each other than this show nothing.
+constexpr size_t kHighlights = 24;
+}  // namespace
+
+PlotPanel::PlotPanel(Workspace& workspace, const QString& name, bool overTime, QWidget* parent)
+    : QWidget(parent), m_workspace(workspace), m_name(name), m_overTime(overTime) {
+  auto* page = new QWidget(this);
+  m_hint = new QLabel(page);
+  m_hint->setObjectName(objectNameOf(QStringLiteral("Hint")));
+  m_hint->setAlignment(Qt::AlignCenter);
+  m_hint->setWordWrap(true);
+  m_hint->setMargin(24);
+  auto* shown = new QWidget(page);
+  m_content = new QVBoxLayout(shown);
+  m_content->setContentsMargins(0, 0, 0, 0);
+  m_chart = new ChartView(shown);
+  m_chart->setObjectName(objectNameOf(QStringLiteral("Chart")));
+  m_chart->setFileStem(name);
+  m_content->addWidget(m_chart, 1);
+  m_pages = new QStackedLayout(page);
+  m_pages->addWidget(m_hint);
+  m_pages->addWidget(shown);
+  m_tools = new QHBoxLayout;
+  m_tools->setContentsMargins(0, 0, 0, 0);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(6, 6, 6, 6);
+  layout->addLayout(m_tools);
+  layout->addWidget(page, 1);
+  m_timer.setSingleShot(true);
+  m_timer.setInterval(kDebounceMs);
+  connect(&m_timer, &QTimer::timeout, this, [this] {
+    m_stale = !isVisible();
+    if (!m_stale) refresh();
+  });
+  connect(&workspace, &Workspace::visibilityChanged, this, &PlotPanel::refreshSoon);
+  connect(&workspace, &Workspace::motionsChanged, this, &PlotPanel::refreshSoon);
+  connect(&workspace, &Workspace::selectionChanged, this, [this] { selectionMoved(); });
+  connect(&workspace, &Workspace::rangeChanged, this, [this] { rangeMoved(); });
+  connect(m_chart, &ChartView::clicked, this, &PlotPanel::takeClick);
+  connect(m_chart, &ChartView::saveFailed, this, [this](const QString& error) {
+    m_workspace.report(tr("The chart was not saved"), error);
+  });
+  linkTime();
+  followTime(overTime);
+}
+
+void PlotPanel::linkTime() {
+  connect(&m_workspace, &Workspace::timeChanged, this, [this] { showTime(); });
+  connect(&m_workspace, &Workspace::rangeChanged, this, [this] { showTime(); });
+  connect(m_chart, &ChartView::brushed, this, [this](double low, double high) {
+    m_workspace.setRange(TimeRange{low, high});
+  });
+  connect(m_chart, &ChartView::brushCleared, this, [this] {
+    if (m_overTime) m_workspace.setRange(std::nullopt);
+  });
+}
+
+void PlotPanel::followTime(bool overTime) {
+  if (m_overTime != overTime) m_chart->resetZoom();
+  m_overTime = overTime;
+  m_chart->setTimeAxis(overTime);
+  showTime();
+}
+
+void PlotPanel::showTime() {
+  const auto& range = m_workspace.range();
+  m_chart->setCursor(m_overTime ? std::optional(m_workspace.time()) : std::nullopt);
+  m_chart->setRange(m_overTime && range ? std::optional(ChartSpan{range->beginS, range->endS})
+                                        : std::nullopt);
+}
+
+void PlotPanel::refreshSoon() {
+  m_stale = true;
+  m_timer.start();
+}
+
+void PlotPanel::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  if (m_stale && !m_timer.isActive()) m_timer.start();
+}
+
+void PlotPanel::showHint(const QString& sentence) {
+  // What is still being worked out belongs to other motions.
+  ++m_version;
+  m_workspace.jobs().cancel(m_job);
+  m_hint->setText(sentence);
+  m_pages->setCurrentIndex(0);
+}
+
+void PlotPanel::showContent() {
+  m_pages->setCurrentIndex(1);
+}
+
+void PlotPanel::showGrid(LinkedGrid grid) {
+  m_curves = std::move(grid.motions);
+  m_chart->setRecipe(recipe());
+  m_chart->setGrid(std::move(grid.grid));
+  showHighlights();
+  showContent();
+}
+
+void PlotPanel::showHighlights() {
+  const std::set<MotionId>& selected = m_workspace.selection().motions;
+  std::vector<ChartHighlight> highlights;
+  for (const auto& [curve, motions] : m_curves) {
+    const auto& charts = m_chart->grid().charts;
+    const auto& series =
+        charts[static_cast<size_t>(curve.chart)].series[static_cast<size_t>(curve.series)];
+    const bool line =
+        series.kind == render::SeriesKind::Line || series.kind == render::SeriesKind::Cloud;
+    const bool all = std::all_of(motions.begin(), motions.end(),
+                                 [&](const MotionId& id) { return selected.contains(id); });
+    if (!line || !all || highlights.size() >= kHighlights) continue;
+    CurvePoints points = pointsOf(m_chart->grid(), curve);
+    highlights.push_back({.chart = curve.chart,
+                          .x = std::move(points.x),
+                          .y = std::move(points.y),
+                          .colour = series.colour});
+  }
+  m_chart->setHighlights(std::move(highlights));
+}
+
+void PlotPanel::takeClick(const ChartHit& hit, Qt::KeyboardModifiers modifiers) {
+  const bool add = modifiers.testFlag(Qt::ControlModifier);
+  if (hit.curve) {
+    const auto found = m_curves.find(*hit.curve);
+    if (found != m_curves.end()) {
+      // Selecting shows highlights anew, but a slot may also replace the curves.
+      const std::vector<MotionId> motions = found->second;
+      selectMotions(motions, add);
+    }
+  }
+  if (m_overTime) m_workspace.setTime(hit.x);
+}
+
+void PlotPanel::selectMotions(const std::vector<MotionId>& motions, bool add) {
+  Selection next = m_workspace.selection();
+  if (!add) next.motions.clear();
+  next.motions.insert(motions.begin(), motions.end());
+  m_workspace.select(std::move(next));
+}
+
+render::Recipe PlotPanel::recipe() const {
+  return plotRecipe(m_name.toStdString(), m_workspace.experiment(), m_workspace.groups(),
+                    m_workspace.range());
+}
+
+void PlotPanel::run(const QString& title, Job::Work work, std::function<void()> take) {
+  const int version = ++m_version;
+  m_workspace.jobs().cancel(m_job);
+  auto error = std::make_shared<QString>();
+  const auto guarded = [error, work = std::move(work)](Progress& progress) {
+    try {
+      work(progress);
+    } catch (const CancelledError&) {
+      throw;
+    } catch (const Error& fault) {
+      *error = QString::fromStdString(fault.what());
+    }
+  };
+  const QPointer<PlotPanel> self(this);
+  m_job = m_workspace.jobs().start(Lane::Files, title, guarded,
+                                   [self, version, error, take = std::move(take)] {
+                                     if (!self || self->m_version != version) return;
+                                     if (error->isEmpty()) return take();
+                                     self->showHint(*error);
+                                   });
+}
+
+}  // namespace marey::gui

@@ -1,0 +1,91 @@
+// What panels with plots have in common: work in the background, an empty state, and the links of a
+// chart to time, range and selection.
+#pragma once
+
+#include <QPointer>
+#include <QTimer>
+#include <QWidget>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "plots/chart_view.h"
+#include "plots/linked_grid.h"
+#include "shell/workspace.h"
+
+class QHBoxLayout;
+class QLabel;
+class QStackedLayout;
+class QVBoxLayout;
+
+namespace marey::gui {
+
+class PlotPanel : public QWidget {
+  Q_OBJECT
+ public:
+  /// `name` starts the object names: NAMEChart, NAMEHint. A chart over time follows time and range.
+  PlotPanel(Workspace& workspace, const QString& name, bool overTime, QWidget* parent);
+
+ protected:
+  /// Works out again what is shown; called when the motions have changed and the panel is visible.
+  virtual void refresh() = 0;
+  virtual void selectionMoved() { showHighlights(); }
+  virtual void rangeMoved() {}
+
+  /// After a moment without further calls, and not while the panel is hidden.
+  void refreshSoon();
+  Workspace& workspace() const { return m_workspace; }
+  ChartView* chart() const { return m_chart; }
+  QHBoxLayout* tools() const { return m_tools; }
+  /// Below the tools; the chart is its first item.
+  QVBoxLayout* content() const { return m_content; }
+  QString objectNameOf(const QString& part) const { return m_name + part; }
+
+  /// Whether x of the chart is time: then it shows and sets the time and the range.
+  void followTime(bool overTime);
+  /// One sentence in place of the content.
+  void showHint(const QString& sentence);
+  /// Shows a grid; its recipe names the motions that are visible now.
+  void showGrid(LinkedGrid grid);
+  void showContent();
+  void showHighlights();
+  /// The recipe of what is shown: document, range, and of every set motions, model and seed.
+  render::Recipe recipe() const;
+  /// Motions of a curve, all of the set where it is a median or a band.
+  void selectMotions(const std::vector<MotionId>& motions, bool add);
+
+  /// Runs `work` beside the event loop and hands its result to `take`. A later call, or the end of
+  /// the panel, makes an earlier one void. Errors of `work` are shown as the hint.
+  template <typename Result>
+  void compute(const QString& title, std::function<Result(Progress&)> work,
+               std::function<void(Result&)> take) {
+    auto result = std::make_shared<std::optional<Result>>();
+    run(
+        title, [result, work = std::move(work)](Progress& progress) { *result = work(progress); },
+        [result, take = std::move(take)] { take(**result); });
+  }
+
+  void showEvent(QShowEvent* event) override;
+
+ private:
+  void run(const QString& title, Job::Work work, std::function<void()> take);
+  void takeClick(const ChartHit& hit, Qt::KeyboardModifiers modifiers);
+  void linkTime();
+  void showTime();
+
+  Workspace& m_workspace;
+  QString m_name;
+  QStackedLayout* m_pages = nullptr;
+  QLabel* m_hint = nullptr;
+  QHBoxLayout* m_tools = nullptr;
+  QVBoxLayout* m_content = nullptr;
+  ChartView* m_chart = nullptr;
+  std::map<CurveRef, std::vector<MotionId>> m_curves;
+  QTimer m_timer;
+  bool m_overTime = false;
+  bool m_stale = true;  ///< changed while hidden
+  int m_version = 0;    ///< of compute
+  int m_job = 0;
+};
+
+}  // namespace marey::gui

@@ -1,0 +1,222 @@
+#include "panels/sampling_panel.h"
+
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QPushButton>
+#include <QRandomGenerator>
+#include <QSpinBox>
+#include <QTableWidget>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "experiment/edits.h"
+
+namespace marey::gui {
+namespace {
+
+class SamplingPanel : public QWidget {
+ public:
+  SamplingPanel(Workspace& workspace, QWidget* parent) : QWidget(parent), m_workspace(workspace) {
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(8, 8, 8, 8);
+    layout->addWidget(buildSystems());
+    layout->addLayout(buildForm());
+    layout->addLayout(buildButtons());
+    m_speed = new QLabel(this);
+    m_speed->setWordWrap(true);
+    layout->addWidget(m_speed);
+    layout->addStretch(1);
+    connectEdits();
+    connect(&workspace, &Workspace::documentChanged, this, &SamplingPanel::refresh);
+    connect(&workspace, &Workspace::currentPathChanged, this, &SamplingPanel::refresh);
+    connect(&workspace.jobs(), &JobQueue::changed, this, &SamplingPanel::refreshButtons);
+    refresh();
+  }
+
+ private:
+  QWidget* buildSystems() {
+    m_systems = new QTableWidget(0, 3, this);
+    m_systems->setObjectName(QStringLiteral("systemTable"));
+    m_systems->setHorizontalHeaderLabels({tr("Model"), tr("Temperature"), tr("File")});
+    m_systems->verticalHeader()->hide();
+    m_systems->horizontalHeader()->setSectionResizeMode(0, QHeaderView::Stretch);
+    m_systems->horizontalHeader()->resizeSection(1, 100);
+    m_systems->horizontalHeader()->setSectionResizeMode(2, QHeaderView::Stretch);
+    m_systems->setSelectionBehavior(QAbstractItemView::SelectRows);
+    m_systems->setMaximumHeight(150);
+    connect(m_systems, &QTableWidget::cellChanged, this, [this](int row, int column) {
+      if (m_refreshing || column != 0) return;
+      const std::string name = m_systems->item(row, 0)->text().toStdString();
+      m_workspace.edit(tr("Rename model"),
+                       [&](Experiment& e) { renameSystem(e, static_cast<size_t>(row), name); });
+      refresh();  // a refused name goes back
+    });
+    return m_systems;
+  }
+
+  QLayout* buildForm() {
+    auto* form = new QFormLayout;
+    m_path = new QComboBox(this);
+    m_path->setObjectName(QStringLiteral("samplePath"));
+    m_seconds = new QDoubleSpinBox(this);
+    m_seconds->setObjectName(QStringLiteral("sampleSeconds"));
+    m_seconds->setRange(0.0, 3600.0);
+    m_seconds->setDecimals(1);
+    m_seconds->setSuffix(tr(" s"));
+    m_seconds->setSpecialValueText(tr("as long as the path takes"));
+    m_count = new QSpinBox(this);
+    m_count->setObjectName(QStringLiteral("sampleCount"));
+    m_count->setRange(1, 100000);
+    m_seed = new QSpinBox(this);
+    m_seed->setObjectName(QStringLiteral("sampleSeed"));
+    m_seed->setRange(0, 2147483647);
+    auto* another = new QToolButton(this);
+    another->setObjectName(QStringLiteral("anotherSeed"));
+    another->setText(tr("Another"));
+    another->setToolTip(tr("A seed drawn at random"));
+    connect(another, &QToolButton::clicked, this, [this] {
+      m_seed->setValue(static_cast<int>(QRandomGenerator::global()->bounded(1, 1000000)));
+    });
+    auto* seed = new QHBoxLayout;
+    seed->addWidget(m_seed, 1);
+    seed->addWidget(another);
+    form->addRow(tr("Path"), m_path);
+    form->addRow(tr("Length"), m_seconds);
+    form->addRow(tr("Samples of each model"), m_count);
+    form->addRow(tr("Seed"), seed);
+    return form;
+  }
+
+  QLayout* buildButtons() {
+    m_run = new QPushButton(tr("Sample"), this);
+    m_run->setObjectName(QStringLiteral("sampleButton"));
+    m_run->setToolTip(tr("Sample every model along the path (Ctrl+Return)"));
+    m_run->setDefault(true);
+    m_cancel = new QPushButton(tr("Cancel"), this);
+    m_cancel->setObjectName(QStringLiteral("sampleCancel"));
+    auto* remove = new QPushButton(tr("Remove model"), this);
+    remove->setObjectName(QStringLiteral("removeModel"));
+    connect(m_run, &QPushButton::clicked, &m_workspace, &Workspace::sampleCurrentPath);
+    connect(m_cancel, &QPushButton::clicked, &m_workspace.jobs(), &JobQueue::cancelAll);
+    connect(remove, &QPushButton::clicked, this, [this] {
+      const int row = m_systems->currentRow();
+      if (row < 0) return;
+      m_workspace.edit(tr("Remove model"),
+                       [row](Experiment& e) { e.systems.erase(e.systems.begin() + row); });
+    });
+    auto* buttons = new QHBoxLayout;
+    buttons->addWidget(m_run, 1);
+    buttons->addWidget(m_cancel);
+    buttons->addWidget(remove);
+    return buttons;
+  }
+
+  void connectEdits() {
+    connect(m_count, qOverload<int>(&QSpinBox::valueChanged), this, [this](int n) {
+      change(tr("Number of samples"), [n](Experiment& e) { e.samples = n; });
+    });
+    connect(m_seed, qOverload<int>(&QSpinBox::valueChanged), this, [this](int seed) {
+      change(tr("Seed"), [seed](Experiment& e) { e.seed = static_cast<uint64_t>(seed); });
+    });
+    connect(m_path, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
+      if (!m_refreshing) m_workspace.setCurrentPath(index);
+    });
+    connect(m_seconds, qOverload<double>(&QDoubleSpinBox::valueChanged), this, [this](double s) {
+      const auto path = static_cast<size_t>(m_workspace.currentPath());
+      change(tr("Length of the path"), [=](Experiment& e) {
+        if (path >= e.paths.size()) return;
+        const bool drawn = !e.paths[path].wayPoints.empty();
+        e.paths[path].seconds = drawn && s < 0.2 ? 0.0 : std::max(0.2, s);
+      });
+    });
+  }
+
+  void change(const QString& label, const std::function<void(Experiment&)>& edit) {
+    if (!m_refreshing) m_workspace.edit(label, edit, true);
+  }
+
+  void refresh() {
+    m_refreshing = true;
+    const Experiment& e = m_workspace.experiment();
+    m_count->setValue(e.samples);
+    m_seed->setValue(static_cast<int>(e.seed));
+    m_path->clear();
+    for (const ExperimentPath& path : e.paths) m_path->addItem(QString::fromStdString(path.name));
+    m_path->setCurrentIndex(m_workspace.currentPath());
+    const auto index = static_cast<size_t>(m_workspace.currentPath());
+    m_seconds->setEnabled(index < e.paths.size());
+    if (index < e.paths.size()) m_seconds->setValue(e.paths[index].seconds);
+    refreshSystems();
+    m_refreshing = false;
+    refreshButtons();
+  }
+
+  void refreshSystems() {
+    const auto& systems = m_workspace.experiment().systems;
+    m_systems->setRowCount(static_cast<int>(systems.size()));
+    for (int row = 0; row < static_cast<int>(systems.size()); ++row) {
+      const ExperimentSystem& system = systems[static_cast<size_t>(row)];
+      auto* name = new QTableWidgetItem(QString::fromStdString(system.name));
+      const render::Colour c = render::colourOf(row);
+      QPixmap swatch(12, 12);
+      swatch.fill(QColor::fromRgbF(c.r, c.g, c.b));
+      name->setIcon(swatch);
+      m_systems->setItem(row, 0, name);
+      auto* file = new QTableWidgetItem(QString::fromStdString(system.model));
+      file->setToolTip(QString::fromStdString(m_workspace.modelFile(system)));
+      file->setFlags(file->flags() & ~Qt::ItemIsEditable);
+      m_systems->setItem(row, 2, file);
+      auto* box = qobject_cast<QDoubleSpinBox*>(m_systems->cellWidget(row, 1));
+      if (box == nullptr) box = temperatureBox(row);
+      box->setValue(system.temperature);
+    }
+  }
+
+  QDoubleSpinBox* temperatureBox(int row) {
+    auto* box = new QDoubleSpinBox;
+    box->setObjectName(QStringLiteral("temperature%1").arg(row));
+    box->setRange(0.0, 4.0);
+    box->setSingleStep(0.05);
+    box->setToolTip(
+        tr("Multiplies the latents: 0 gives the most likely motion, 1 the model's own "
+           "spread"));
+    connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this, [this, row](double t) {
+      change(tr("Temperature"),
+             [=](Experiment& e) { e.systems.at(static_cast<size_t>(row)).temperature = t; });
+    });
+    m_systems->setCellWidget(row, 1, box);
+    return box;
+  }
+
+  void refreshButtons() {
+    const Experiment& e = m_workspace.experiment();
+    m_run->setEnabled(!e.systems.empty() && !e.paths.empty());
+    m_cancel->setEnabled(!m_workspace.jobs().idle());
+    m_speed->setText(e.systems.empty() ? tr("Add a model (Ctrl+M) or drop its file on the window.")
+                     : e.paths.empty() ? tr("Add a path in the path editor.")
+                                       : QString());
+  }
+
+  Workspace& m_workspace;
+  QTableWidget* m_systems = nullptr;
+  QComboBox* m_path = nullptr;
+  QDoubleSpinBox* m_seconds = nullptr;
+  QSpinBox* m_count = nullptr;
+  QSpinBox* m_seed = nullptr;
+  QPushButton* m_run = nullptr;
+  QPushButton* m_cancel = nullptr;
+  QLabel* m_speed = nullptr;
+  bool m_refreshing = false;  ///< the widgets are being set, not used
+};
+
+}  // namespace
+
+QWidget* makeSamplingPanel(Workspace& workspace, QWidget* parent) {
+  return new SamplingPanel(workspace, parent);
+}
+
+}  // namespace marey::gui

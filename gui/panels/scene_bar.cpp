@@ -1,0 +1,208 @@
+#include "panels/scene_bar.h"
+
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QWidgetAction>
+
+#include "panels/paint_style.h"
+
+namespace marey::gui {
+namespace {
+
+QString withKeys(const QString& toolTip, const QList<QKeySequence>& keys) {
+  if (keys.isEmpty()) return toolTip;
+  QStringList names;
+  for (const QKeySequence& key : keys) names << key.toString(QKeySequence::NativeText);
+  return QStringLiteral("%1 (%2)").arg(toolTip, names.join(QStringLiteral(", ")));
+}
+
+}  // namespace
+
+SceneBar::SceneBar(SceneView& view, QWidget* shortcutOwner, QWidget* parent)
+    : QWidget(parent), m_view(view), m_owner(shortcutOwner) {
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(kMargin, 4, kMargin, 4);
+  layout->setSpacing(kSpacing);
+  m_colour = addChoice(QStringLiteral("sceneColourBy"), tr("What the colours mean"),
+                       {tr("By system"), tr("By sample"), tr("By log-likelihood"), tr("By speed")});
+  m_placement = addChoice(
+      QStringLiteral("scenePlacement"),
+      tr("Where the motions are: where they walk, all in their own root frame, or moved apart"),
+      {tr("World"), tr("Root-aligned"), tr("Side by side")});
+  buildViewMenu();
+  buildShowMenu();
+  addToggle(QStringLiteral("sceneFollow"), tr("Follow"),
+            tr("The camera moves along with the chosen motions, or with all"), {},
+            [this](bool on) { m_view.setFollow(on); });
+  m_edit = addToggle(QStringLiteral("sceneEditPath"), tr("Edit path"),
+                     tr("Drag the way-points of the current path on the floor"), {Qt::Key_E},
+                     [this](bool on) {
+                       if (on) m_placement->setCurrentIndex(0);  // elsewhere the path has no place
+                       if (on) m_path->setChecked(true);
+                       m_view.setPathEditing(on);
+                     });
+  layout->addStretch(1);
+  auto* remove = new QAction(tr("Remove way-point"), m_owner);
+  remove->setObjectName(QStringLiteral("sceneRemoveWayPoint"));
+  remove->setShortcut(QKeySequence::Delete);
+  remove->setShortcutContext(Qt::WidgetWithChildrenShortcut);
+  connect(remove, &QAction::triggered, this, [this] { m_view.removeWayPoint(); });
+  m_owner->addAction(remove);
+  connect(m_placement, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
+    if (index != 0) m_edit->setChecked(false);
+    apply();
+  });
+  connect(m_colour, qOverload<int>(&QComboBox::currentIndexChanged), this, &SceneBar::apply);
+}
+
+QComboBox* SceneBar::addChoice(const QString& name, const QString& toolTip,
+                               const QStringList& items) {
+  auto* box = new QComboBox(this);
+  box->setObjectName(name);
+  box->setToolTip(toolTip);
+  box->setAccessibleName(toolTip);
+  box->addItems(items);
+  box->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  layout()->addWidget(box);
+  return box;
+}
+
+QToolButton* SceneBar::addMenu(const QString& name, const QString& text, const QString& toolTip) {
+  auto* button = new QToolButton(this);
+  button->setObjectName(name);
+  button->setText(text);
+  button->setToolTip(toolTip);
+  button->setPopupMode(QToolButton::InstantPopup);
+  button->setAutoRaise(true);
+  button->setMenu(new QMenu(button));
+  layout()->addWidget(button);
+  return button;
+}
+
+QToolButton* SceneBar::addToggle(const QString& name, const QString& text, const QString& toolTip,
+                                 const QList<QKeySequence>& keys,
+                                 const std::function<void(bool)>& set) {
+  auto* button = new QToolButton(this);
+  button->setObjectName(name);
+  button->setText(text);
+  button->setToolTip(withKeys(toolTip, keys));
+  button->setCheckable(true);
+  button->setAutoRaise(true);
+  connect(button, &QToolButton::toggled, this, set);
+  layout()->addWidget(button);
+  if (!keys.isEmpty()) addAction(nullptr, name + "Key", text, keys, [button] { button->toggle(); });
+  return button;
+}
+
+QAction* SceneBar::addAction(QMenu* menu, const QString& name, const QString& text,
+                             const QList<QKeySequence>& keys, const std::function<void()>& run) {
+  auto* action = new QAction(text, m_owner);
+  action->setObjectName(name);
+  action->setShortcuts(keys);
+  // Single letters must not act while somebody types in another panel.
+  action->setShortcutContext(Qt::WidgetWithChildrenShortcut);
+  connect(action, &QAction::triggered, this, run);
+  m_owner->addAction(action);
+  if (menu) menu->addAction(action);
+  return action;
+}
+
+void SceneBar::buildViewMenu() {
+  QMenu* menu = addMenu(QStringLiteral("sceneViewMenu"), tr("View"),
+                        tr("Camera: left drag turns, middle or Shift drag shifts, wheel zooms"))
+                    ->menu();
+  struct Preset {
+    const char* name;
+    QString text;
+    QList<QKeySequence> keys;
+    render::LiveView view;
+  };
+  const std::vector<Preset> presets = {
+      {"sceneViewThreeQuarter", tr("Three-quarter"), {Qt::Key_0}, render::LiveView::ThreeQuarter},
+      {"sceneViewSide", tr("Side"), {Qt::Key_1}, render::LiveView::Side},
+      {"sceneViewFront", tr("Front"), {Qt::Key_3}, render::LiveView::Front},
+      {"sceneViewBack", tr("Back"), {Qt::Key_9}, render::LiveView::Back},
+      {"sceneViewTop", tr("Top"), {Qt::Key_7}, render::LiveView::Top}};
+  for (const Preset& preset : presets)
+    addAction(menu, QLatin1String(preset.name), preset.text, preset.keys,
+              [this, view = preset.view] { m_view.setView(view); });
+  menu->addSeparator();
+  QAction* flat = addAction(menu, QStringLiteral("sceneOrthographic"), tr("Orthographic"),
+                            {Qt::Key_5, Qt::Key_O}, [] {});
+  flat->setCheckable(true);
+  connect(flat, &QAction::toggled, this, [this](bool on) { m_view.setOrthographic(on); });
+  addAction(menu, QStringLiteral("sceneFit"), tr("Fit everything"), {Qt::Key_F, Qt::Key_X},
+            [this] { m_view.fit(); });
+}
+
+void SceneBar::buildShowMenu() {
+  QMenu* menu =
+      addMenu(QStringLiteral("sceneShowMenu"), tr("Show"), tr("How figures and floor are drawn"))
+          ->menu();
+  auto* holder = new QWidgetAction(menu);
+  holder->setDefaultWidget(showForm(menu));
+  menu->addAction(holder);
+  addAction(nullptr, QStringLiteral("sceneShadowKey"), tr("Shadow"), {Qt::Key_S},
+            [this] { m_shadow->toggle(); });
+}
+
+QWidget* SceneBar::showForm(QWidget* parent) {
+  auto* form = new QWidget(parent);
+  auto* rows = new QFormLayout(form);
+  rows->setContentsMargins(kMargin, kMargin, kMargin, kMargin);
+  const auto choice = [&](const char* name, const QString& label, const QStringList& items) {
+    auto* box = new QComboBox(form);
+    box->setObjectName(QLatin1String(name));
+    box->addItems(items);
+    rows->addRow(label, box);
+    connect(box, qOverload<int>(&QComboBox::currentIndexChanged), this, &SceneBar::apply);
+    return box;
+  };
+  const auto check = [&](const char* name, const QString& label, bool on) {
+    auto* box = new QCheckBox(label, form);
+    box->setObjectName(QLatin1String(name));
+    box->setChecked(on);
+    rows->addRow(QString(), box);
+    connect(box, &QCheckBox::toggled, this, &SceneBar::apply);
+    return box;
+  };
+  m_detail = choice("sceneDetail", tr("Detail"), {tr("Automatic"), tr("Capsules"), tr("Lines")});
+  m_opacity = new QSlider(Qt::Horizontal, form);
+  m_opacity->setObjectName(QStringLiteral("sceneOpacity"));
+  m_opacity->setRange(5, 100);
+  m_opacity->setValue(100);
+  m_opacity->setToolTip(tr("Opacity of motions, 5 to 100 %"));
+  connect(m_opacity, &QSlider::valueChanged, this, &SceneBar::apply);
+  rows->addRow(tr("Opacity"), m_opacity);
+  m_ghosts = new QDoubleSpinBox(form);
+  m_ghosts->setObjectName(QStringLiteral("sceneGhosts"));
+  m_ghosts->setRange(0.0, 10.0);
+  m_ghosts->setSingleStep(0.25);
+  m_ghosts->setSuffix(tr(" s"));
+  m_ghosts->setSpecialValueText(tr("off"));
+  m_ghosts->setToolTip(tr("Paler figures every so many seconds, as on Marey's plates"));
+  connect(m_ghosts, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &SceneBar::apply);
+  rows->addRow(tr("Ghosts every"), m_ghosts);
+  m_trails = choice("sceneTrails", tr("Trails"), {tr("Off"), tr("Selected joint"), tr("Feet")});
+  m_contacts = check("sceneContacts", tr("Foot contacts on the floor"), false);
+  m_shadow = check("sceneShadow", tr("Shadow (S)"), true);
+  m_path = check("scenePath", tr("Current path"), true);
+  return form;
+}
+
+void SceneBar::apply() {
+  SceneSettings settings;
+  settings.colourBy = static_cast<ColourBy>(m_colour->currentIndex());
+  settings.placement = static_cast<render::Placement>(m_placement->currentIndex());
+  settings.detail = static_cast<render::BodyDetail>(m_detail->currentIndex());
+  settings.opacity = m_opacity->value() / 100.0;
+  settings.ghostsS = m_ghosts->value();
+  settings.trails = static_cast<Trails>(m_trails->currentIndex());
+  settings.contacts = m_contacts->isChecked();
+  settings.shadow = m_shadow->isChecked();
+  settings.path = m_path->isChecked();
+  m_view.setSettings(settings);
+}
+
+}  // namespace marey::gui

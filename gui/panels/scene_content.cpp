@@ -1,0 +1,125 @@
+#include "panels/scene_content.h"
+
+#include <QCoreApplication>
+#include <algorithm>
+
+#include "motion/roles.h"
+
+namespace marey::gui {
+namespace {
+
+QString tr(const char* text) {
+  return QCoreApplication::translate("Scene", text);
+}
+
+/// Natural motion has a likelihood only under a model: the first one whose scores are there.
+const std::vector<ClipScore>* scoresOfNatural(const Workspace& workspace) {
+  for (const ExperimentSystem& system : workspace.experiment().systems)
+    if (const auto* scores = workspace.naturalScores(system.name)) return scores;
+  return nullptr;
+}
+
+/// The rate of the models: that of their samples, where there is one.
+double modelRate(const Workspace& workspace) {
+  for (const MotionGroup& group : workspace.groups())
+    if (!group.natural() && !group.motions.empty()) return group.motions.front().clip->fps;
+  return workspace.experiment().fps;
+}
+
+/// Natural scores come in the order of the natural clips, over all natural groups.
+const ClipScore* scoreOf(const MotionGroup& group, const MotionId& id,
+                         const std::vector<ClipScore>* natural) {
+  const auto index = static_cast<size_t>(id.index);
+  const Motion& motion = group.motions[index];
+  if (motion.score) return &*motion.score;
+  if (!group.natural() || !natural || index >= natural->size()) return nullptr;
+  return &(*natural)[index];
+}
+
+std::vector<double> valuesOf(const Workspace& workspace, const SceneSettings& settings,
+                             const MotionId& id, RootSpeeds& speeds) {
+  const MotionGroup& group = *workspace.group(id.group);
+  const ClipPtr& clip = group.motions[static_cast<size_t>(id.index)].clip;
+  if (settings.colourBy == ColourBy::Speed) return speeds.of(clip);
+  const ClipScore* score = scoreOf(group, id, scoresOfNatural(workspace));
+  return score ? likelihoodPerFrame(*clip, *score, modelRate(workspace)) : std::vector<double>{};
+}
+
+void colourByValue(const Workspace& workspace, const SceneSettings& settings, RootSpeeds& speeds,
+                   SceneContent& content) {
+  std::vector<std::vector<double>> values;
+  std::vector<double> all;
+  bool missing = false;
+  for (const MotionId& id : content.ids) {
+    values.push_back(valuesOf(workspace, settings, id, speeds));
+    missing = missing || values.back().empty();
+    all.insert(all.end(), values.back().begin(), values.back().end());
+  }
+  content.scale = middleRange(std::move(all));
+  const bool likelihood = settings.colourBy == ColourBy::Likelihood;
+  content.scaleTitle = likelihood ? tr("Log-likelihood (nats per frame)") : tr("Root speed (m/s)");
+  if (missing) content.note = tr("Grey: not scored yet");
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (content.scale && !values[i].empty())
+      content.motions[i].frameColours = coloursOf(values[i], *content.scale);
+    else
+      content.motions[i].colour = render::grey(0.6);
+  }
+}
+
+void colourBySample(const Workspace& workspace, SceneContent& content) {
+  for (size_t i = 0; i < content.ids.size(); ++i) {
+    const MotionGroup& group = *workspace.group(content.ids[i].group);
+    const auto last = std::max<double>(1.0, static_cast<double>(group.motions.size()) - 1.0);
+    // The scale's yellow end is hard to see on white.
+    content.motions[i].colour = scaleColour(0.9 * content.ids[i].index / last);
+  }
+}
+
+}  // namespace
+
+QString motionLabel(const MotionGroup& group, int index) {
+  const Motion& motion = group.motions.at(static_cast<size_t>(index));
+  if (group.natural() && motion.clip && !motion.clip->name.empty())
+    return QString::fromStdString(motion.clip->name);
+  return QStringLiteral("%1, %2 %3")
+      .arg(QString::fromStdString(group.name), tr("sample"), QString::number(index + 1));
+}
+
+std::vector<int> trailJoints(const Workspace& workspace, Trails trails) {
+  if (trails == Trails::Off) return {};
+  if (trails == Trails::Feet) return workspace.feet();
+  if (workspace.selection().joint) return {*workspace.selection().joint};
+  const auto skeleton = workspace.skeleton();
+  return skeleton ? std::vector<int>{rolesOf(*skeleton).hips} : std::vector<int>{};
+}
+
+SceneContent sceneContent(const Workspace& workspace, const SceneSettings& settings,
+                          RootSpeeds& speeds) {
+  SceneContent out;
+  out.ids = workspace.visibleMotions();
+  std::map<int, int> counts;
+  for (const MotionId& id : out.ids) {
+    const MotionGroup& group = *workspace.group(id.group);
+    ++counts[id.group];
+    out.motions.push_back({.clip = group.motions[static_cast<size_t>(id.index)].clip,
+                           .colour = group.colour(),
+                           .opacity = settings.opacity,
+                           .highlighted = workspace.selected(id),
+                           .label = motionLabel(group, id.index).toStdString()});
+  }
+  for (const MotionGroup& group : workspace.groups())
+    if (const int count = counts[group.id]; count > 0)
+      out.legend.push_back(
+          {group.colour(),
+           QStringLiteral("%1 (%2)").arg(QString::fromStdString(group.name)).arg(count)});
+  if (settings.colourBy == ColourBy::Sample) {
+    colourBySample(workspace, out);
+    out.note = tr("Colour: number of the sample, from dark to light");
+  } else if (settings.colourBy != ColourBy::System) {
+    colourByValue(workspace, settings, speeds, out);
+  }
+  return out;
+}
+
+}  // namespace marey::gui

@@ -1,0 +1,52 @@
+// What the 3D view draws, as values: motions with their colours, and what its legend says.
+#pragma once
+
+#include <QColor>
+#include <QString>
+#include <optional>
+#include <vector>
+
+#include "panels/motion_colours.h"
+#include "shell/workspace.h"
+
+#include "render/live_scene.h"
+
+namespace marey::gui {
+
+enum class Trails { Off, SelectedJoint, Feet };
+
+/// What the bar above the view sets.
+struct SceneSettings {
+  ColourBy colourBy = ColourBy::System;
+  render::Placement placement = render::Placement::World;
+  render::BodyDetail detail = render::BodyDetail::Auto;
+  double opacity = 1.0;
+  double ghostsS = 0.0;  ///< 0: none
+  Trails trails = Trails::Off;
+  bool contacts = false;
+  bool shadow = true;
+  bool path = true;
+};
+
+struct LegendLine {
+  render::Colour colour;
+  QString text;
+};
+
+struct SceneContent {
+  std::vector<render::LiveMotion> motions;
+  std::vector<MotionId> ids;  ///< of the motions, in their order
+  std::vector<LegendLine> legend;
+  std::optional<ScaleRange> scale;  ///< of a colour bar
+  QString scaleTitle;               ///< with its unit
+  QString note;                     ///< why something is not coloured; empty: all is
+};
+
+SceneContent sceneContent(const Workspace& workspace, const SceneSettings& settings,
+                          RootSpeeds& speeds);
+/// Title, unit and meaning for people; `index` is its number in the group.
+QString motionLabel(const MotionGroup& group, int index);
+/// Joints that draw trails.
+std::vector<int> trailJoints(const Workspace& workspace, Trails trails);
+
+}  // namespace marey::gui

@@ -1,0 +1,226 @@
+#include "panels/scene_view.h"
+
+#include <QPainter>
+#include <algorithm>
+
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkNew.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+
+#include "base/error.h"
+
+namespace marey::gui {
+namespace {
+
+/// Names under the mouse are looked up when it rests this long: every look-up visits every joint.
+constexpr int kHoverMs = 40;
+
+}  // namespace
+
+SceneView::SceneView(Workspace& workspace, QWidget* parent)
+    : QVTKOpenGLNativeWidget(parent),
+      m_workspace(workspace),
+      m_path(new CurrentPath(workspace, this)),
+      m_tool(*m_path, m_scene) {
+  setObjectName(QStringLiteral("sceneView"));
+  setMinimumSize(240, 180);
+  setMouseTracking(true);
+  setFocusPolicy(Qt::StrongFocus);
+  setAccessibleName(tr("3D view of the motions"));
+  vtkNew<vtkGenericOpenGLRenderWindow> window;
+  window->SetMultiSamples(0);
+  setRenderWindow(window);
+  // The mouse is handled here; VTK's own style would move the camera a second time.
+  if (window->GetInteractor()) window->GetInteractor()->SetInteractorStyle(nullptr);
+  window->AddRenderer(m_scene.renderer());
+  m_overlay = new SceneOverlay(this);
+  m_overlay->setContent(&m_content);
+  m_overlay->setTool(
+      [this](QPainter& painter, const Inks& inks) { m_tool.paint(painter, size(), inks); });
+  m_redraw.setSingleShot(true);
+  m_redraw.setInterval(0);
+  connect(&m_redraw, &QTimer::timeout, this, &SceneView::flush);
+  m_hover.setSingleShot(true);
+  m_hover.setInterval(kHoverMs);
+  connect(&m_hover, &QTimer::timeout, this, &SceneView::updateHover);
+  connectWorkspace();
+  schedule();
+}
+
+SceneView::~SceneView() {
+  // The scene lets go of what it has on the graphics card, which needs the context.
+  if (context() != nullptr) makeCurrent();
+  renderWindow()->RemoveRenderer(m_scene.renderer());
+}
+
+void SceneView::connectWorkspace() {
+  for (const auto changed : {&Workspace::motionsChanged, &Workspace::visibilityChanged,
+                             &Workspace::naturalScoresChanged, &Workspace::selectionChanged})
+    connect(&m_workspace, changed, this, &SceneView::changeMotions);
+  connect(&m_workspace, &Workspace::documentChanged, this, &SceneView::changeMotions);
+  connect(&m_workspace, &Workspace::timeChanged, this, [this](double seconds) {
+    m_scene.setTime(seconds);
+    schedule();
+  });
+  connect(m_path, &CurrentPath::changed, this, &SceneView::changeOptions);
+}
+
+void SceneView::changeMotions() {
+  m_motionsChanged = true;
+  changeOptions();
+}
+
+void SceneView::changeOptions() {
+  m_optionsChanged = true;
+  schedule();
+}
+
+void SceneView::schedule() {
+  if (!m_redraw.isActive()) m_redraw.start();
+}
+
+void SceneView::flush() {
+  m_redraw.stop();
+  // Nothing is worked out for a view that is not seen; showing it comes back here.
+  if (!isVisible()) return;
+  if (m_motionsChanged) updateMotions();
+  if (m_optionsChanged) updateOptions();
+  m_motionsChanged = m_optionsChanged = false;
+  fitNew();
+  updateHint();
+  if (isValid()) renderWindow()->Render();
+  m_overlay->update();
+}
+
+void SceneView::updateMotions() {
+  m_trouble.clear();
+  m_content = sceneContent(m_workspace, m_settings, m_speeds);
+  try {
+    m_scene.setMotions(m_content.motions);
+  } catch (const Error& error) {
+    m_trouble = QString::fromUtf8(error.what());
+  }
+  m_scene.setTime(m_workspace.time());
+}
+
+void SceneView::fitNew() {
+  const size_t count = m_content.motions.size();
+  const bool path = !m_path->frames().empty();
+  // More motions widen the view until the user has moved the camera; fewer leave it alone. A
+  // path alone is looked at once, so that editing it does not move the floor under the mouse.
+  const bool more = count > m_fittedMotions || (path && !m_fittedPath && count == 0);
+  if (more && (!m_cameraMoved || m_fittedMotions == 0))
+    m_scene.setView(render::LiveView::ThreeQuarter, width(), height());
+  m_fittedMotions = count;
+  m_fittedPath = path;
+}
+
+void SceneView::updateOptions() {
+  render::LiveOptions options;
+  options.placement = m_settings.placement;
+  options.detail = m_settings.detail;
+  options.ghostsS = m_settings.ghostsS;
+  options.trailJoints = trailJoints(m_workspace, m_settings.trails);
+  options.contactMarks = m_settings.contacts;
+  options.shadow = m_settings.shadow;
+  if (m_settings.path) options.path = m_path->frames();
+  options.dark = isDark(palette());
+  options.highlightJoint = m_workspace.selection().joint;
+  try {
+    m_scene.setOptions(options);
+  } catch (const Error& error) {
+    m_trouble = QString::fromUtf8(error.what());
+    options.placement = render::Placement::World;
+    m_scene.setOptions(options);
+  }
+}
+
+void SceneView::updateHint() {
+  const bool empty = m_content.motions.empty();
+  QString hint;
+  if (empty && m_workspace.groups().empty())
+    hint = tr("Open motion files, or sample a model along the path, to see motions here.");
+  else if (empty)
+    hint = tr("All motions are hidden. Show some in the Motions panel.");
+  m_overlay->setHint(m_tool.active() ? QString() : hint);
+  QString mode = m_trouble;
+  if (m_tool.active() && !m_path->problem().isEmpty())
+    mode = m_path->problem();
+  else if (m_tool.active() && m_path->points().empty())
+    mode = tr("The document has no path to edit. Add one in the Path panel.");
+  else if (m_tool.active())
+    mode =
+        tr("Drag a way-point to move it, double-click the floor to add one, Delete removes the "
+           "chosen one.");
+  m_overlay->setMode(mode);
+}
+
+void SceneView::setSettings(const SceneSettings& settings) {
+  const bool moved = settings.placement != m_settings.placement;
+  const bool toLikelihood =
+      settings.colourBy == ColourBy::Likelihood && m_settings.colourBy != ColourBy::Likelihood;
+  m_settings = settings;
+  if (toLikelihood && !m_workspace.experiment().systems.empty()) {
+    const auto& groups = m_workspace.groups();
+    const bool natural = std::any_of(groups.begin(), groups.end(), [](const MotionGroup& g) {
+      return g.natural() && !g.motions.empty();
+    });
+    // Samples carry their scores; natural motion gets those under the first model.
+    const std::string& system = m_workspace.experiment().systems.front().name;
+    if (natural && !m_workspace.naturalScores(system)) m_workspace.scoreNatural(system);
+  }
+  changeMotions();
+  if (moved) {
+    flush();
+    fit();
+  }
+}
+
+void SceneView::setView(render::LiveView view) {
+  m_cameraMoved = true;
+  m_scene.setView(view, width(), height());
+  schedule();
+}
+
+void SceneView::fit() {
+  if (m_content.motions.empty() && m_path->frames().empty()) return;
+  m_scene.fit(width(), height());
+  schedule();
+}
+
+void SceneView::setFollow(bool follow) {
+  m_scene.setFollow(follow);
+  schedule();
+}
+
+void SceneView::setOrthographic(bool orthographic) {
+  m_scene.setOrthographic(orthographic);
+  schedule();
+}
+
+void SceneView::setPathEditing(bool editing) {
+  m_tool.setActive(editing);
+  changeOptions();
+}
+
+void SceneView::removeWayPoint() {
+  m_tool.removeChosen();
+  schedule();
+}
+
+QImage SceneView::picture() {
+  flush();
+  QImage out = isValid() ? grabFramebuffer() : QImage();
+  if (out.isNull()) {
+    out = QImage(size() * devicePixelRatioF(), QImage::Format_RGB32);
+    out.setDevicePixelRatio(devicePixelRatioF());
+    out.fill(toQColor(m_scene.background()));
+  }
+  out = out.convertToFormat(QImage::Format_RGB32);
+  QPainter painter(&out);
+  m_overlay->render(&painter, {}, {}, QWidget::DrawChildren);
+  return out;
+}
+
+}  // namespace marey::gui

@@ -1,0 +1,81 @@
+// The 3D view: all visible motions on one clock, with mouse and keys.
+#pragma once
+
+#include <QImage>
+#include <QTimer>
+#include <memory>
+
+#include "panels/current_path.h"
+#include "panels/floor_path_tool.h"
+#include "panels/scene_content.h"
+#include "panels/scene_overlay.h"
+#include <QVTKOpenGLNativeWidget.h>
+
+#include "render/live_scene.h"
+
+namespace marey::gui {
+
+/// Redraws at most once per turn of the event loop, whatever changes meanwhile.
+class SceneView : public QVTKOpenGLNativeWidget {
+  Q_OBJECT
+ public:
+  SceneView(Workspace& workspace, QWidget* parent);
+  ~SceneView() override;
+
+  const SceneSettings& settings() const { return m_settings; }
+  void setSettings(const SceneSettings& settings);
+  render::LiveScene& scene() { return m_scene; }
+  void setView(render::LiveView view);
+  void fit();
+  void setFollow(bool follow);
+  void setOrthographic(bool orthographic);
+  void setPathEditing(bool editing);
+  void removeWayPoint();
+  /// What is shown, drawn now, with the legend. Without OpenGL only what lies over the picture.
+  QImage picture();
+
+ protected:
+  bool event(QEvent* event) override;
+  void changeEvent(QEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+  void showEvent(QShowEvent* event) override;
+  void leaveEvent(QEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+
+ private:
+  enum class Drag { None, Undecided, Orbit, Pan, WayPoint };
+  void connectWorkspace();
+  void changeMotions();
+  void changeOptions();
+  void schedule();
+  void flush();
+  void updateMotions();
+  void updateOptions();
+  void fitNew();
+  void updateHint();
+  void updateHover();
+  void pick(const QPointF& at, bool add);
+
+  Workspace& m_workspace;
+  render::LiveScene m_scene;
+  CurrentPath* m_path = nullptr;
+  FloorPathTool m_tool;
+  SceneSettings m_settings;
+  SceneContent m_content;
+  RootSpeeds m_speeds;
+  SceneOverlay* m_overlay = nullptr;
+  QTimer m_redraw, m_hover;
+  bool m_motionsChanged = true, m_optionsChanged = true;
+  bool m_cameraMoved = false;  ///< by the user, who then keeps it
+  size_t m_fittedMotions = 0;
+  bool m_fittedPath = false;
+  QString m_trouble;  ///< why a choice could not be drawn
+  Drag m_drag = Drag::None;
+  QPointF m_pressedAt, m_mouse;
+};
+
+}  // namespace marey::gui

@@ -156,7 +156,8 @@ void Workspace::sampleCurrentPath() {
   }
 }
 
-void Workspace::sample(const SampleRecipe& recipe, int replaceGroup, int colourIndex) {
+void Workspace::sample(const SampleRecipe& given, int replaceGroup, int colourIndex) {
+  const SampleRecipe recipe = given;  // it may be that of a group, and groups come and go here
   const int known = systemIndex(recipe.system.name);
   const MotionGroup* old = this->group(replaceGroup);
   const int index = known >= 0 ? known : std::max(0, old ? old->colourIndex : colourIndex);
@@ -173,8 +174,9 @@ void Workspace::sample(const SampleRecipe& recipe, int replaceGroup, int colourI
       m_jobs.cancel(int{stopped->second.job});
     }
   }
+  const std::string name = recipe.system.name + " – " + recipe.path.name;
   m_groups.push_back({.id = id,
-                      .name = recipe.system.name + " – " + recipe.path.name,
+                      .name = name,
                       .system = recipe.system.name,
                       .colourIndex = index,
                       .complete = false,
@@ -183,9 +185,8 @@ void Workspace::sample(const SampleRecipe& recipe, int replaceGroup, int colourI
                       .wanted = {},
                       .motions = {}});
   tellMotions();
-  const QString title = tr("Sampling %1").arg(QString::fromStdString(findGroup(id)->name));
-  const int job = m_jobs.start(Lane::Models, title, drawingWork(recipe, id));
-  m_drawings[id].job = job;
+  m_drawings[id].job = m_jobs.start(
+      Lane::Models, tr("Sampling %1").arg(QString::fromStdString(name)), drawingWork(recipe, id));
 }
 
 Job::Work Workspace::drawingWork(const SampleRecipe& recipe, int id) {

@@ -14,13 +14,6 @@
 
 namespace marey::gui {
 
-/// A curve drawn over the picture, without drawing that anew.
-struct ChartHighlight {
-  int chart = 0;
-  std::vector<double> x, y;
-  render::Colour colour;
-};
-
 struct ChartSpan {
   double low = 0.0, high = 0.0;
   bool operator==(const ChartSpan&) const = default;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiment/document.h"
+#include "experiment/live_rollout.h"
 #include "experiment/path_choice.h"
 #include "model/scorer.h"
 
@@ -20,9 +21,11 @@ struct SampleRecipe {
   ExperimentPath path;
   int samples = 1;
   uint64_t seed = 1;
-  double fps = 20.0;  ///< of the document; the model must have it
+  double fps = 20.0;             ///< of the document; the model must have it
   std::filesystem::path folder;  ///< relative names start there
   bool startFromClip = false;    ///< clip:FILE paths only: the clip's first frames start the motion
+  /// Of a steered motion, instead of the path, which only shows where it went.
+  std::shared_ptr<const Steering> steering = nullptr;
 
   bool operator==(const SampleRecipe&) const = default;
 };

@@ -37,6 +37,7 @@ class ChartView : public QWidget {
   void setCursor(std::optional<double> x);
   void setRange(std::optional<ChartSpan> range);
   void setHighlights(std::vector<ChartHighlight> highlights);
+  const std::vector<ChartHighlight>& highlights() const { return m_highlights; }
   void resetZoom();
   bool zoomed() const { return m_zoom.has_value(); }
 

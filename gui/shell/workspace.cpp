@@ -115,6 +115,7 @@ void Workspace::open(Experiment experiment, const QString& file) {
   m_selection = {};
   m_time = 0.0;
   m_range.reset();
+  Q_EMIT documentOpened();
   Q_EMIT documentChanged();
   Q_EMIT motionsChanged();
   Q_EMIT visibilityChanged();

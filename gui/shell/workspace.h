@@ -98,6 +98,7 @@ class Workspace : public QObject {
 
  Q_SIGNALS:
   void documentChanged();
+  void documentOpened();  ///< another one, before documentChanged
   void currentPathChanged();
   void motionsChanged();     ///< groups or their motions
   void visibilityChanged();  ///< after motionsChanged too

@@ -25,6 +25,7 @@ LiveRollout::LiveRollout(std::shared_ptr<const MotionModel> model, const LiveOpt
     : m_model(std::move(model)),
       m_options(options),
       m_velocity(options.begin),
+      m_bodyVelocity(options.begin),
       m_root(options.start) {
   const ModelInfo& info = m_model->info();
   if (!info.skeleton)
@@ -33,7 +34,8 @@ LiveRollout::LiveRollout(std::shared_ptr<const MotionModel> model, const LiveOpt
     throwInput({.path = info.variant}, "a model that is controlled by a path (3 values per frame)",
                "{} control values", info.controlDim);
   const int rows = info.context + 1 + info.lookahead;
-  m_window = controlOf(m_velocity, info.features.fps).replicate(1, rows);
+  m_bodyVelocity = inBodyFrame(m_velocity.facingRad);
+  m_window = controlOf(m_bodyVelocity, info.features.fps).replicate(1, rows);
   m_state = m_model->start(1, {});
   const auto warmUp = static_cast<int>(std::lround(options.warmUpS * info.features.fps));
   for (int t = 0; t < warmUp; ++t) step();
@@ -47,7 +49,7 @@ void LiveRollout::step() {
   const Matrix past = m_window.middleCols(wide, kept);
   m_window.leftCols(kept) = past;
   m_window.rightCols(m_window.cols() - kept) =
-      controlOf(m_velocity, info.features.fps).replicate(1, 1 + info.lookahead);
+      controlOf(m_bodyVelocity, info.features.fps).replicate(1, 1 + info.lookahead);
   Matrix latent(1, info.poseDim);
   drawLatent(m_options.seed, m_options.sample, m_generated, m_options.temperature,
              m_model->baseDegreesOfFreedom(), {latent.data(), static_cast<size_t>(info.poseDim)});
@@ -60,6 +62,17 @@ void LiveRollout::step() {
   ++m_generated;
 }
 
+/// A body that looks to the left of its way goes to its right, and turns more than its way does.
+LiveCommand LiveRollout::inBodyFrame(double facingBefore) const {
+  // Displacements are those in the frame of the step before.
+  const double c = std::cos(facingBefore), s = std::sin(facingBefore);
+  LiveCommand out = m_velocity;
+  out.forwardMS = c * m_velocity.forwardMS + s * m_velocity.sidewaysMS;
+  out.sidewaysMS = c * m_velocity.sidewaysMS - s * m_velocity.forwardMS;
+  out.turnRadS += (m_velocity.facingRad - facingBefore) * m_model->info().features.fps;
+  return out;
+}
+
 std::vector<Vec3> LiveRollout::advance(const LiveCommand& command) {
   const ModelInfo& info = m_model->info();
   const double fps = info.features.fps;
@@ -68,8 +81,13 @@ std::vector<Vec3> LiveRollout::advance(const LiveCommand& command) {
   approach(m_velocity.forwardMS, command.forwardMS, share);
   approach(m_velocity.sidewaysMS, command.sidewaysMS, share);
   approach(m_velocity.turnRadS, command.turnRadS, share);
+  const double facingBefore = m_velocity.facingRad;
+  // The first frame stands at the start and cannot turn.
+  if (m_frames > 0) approach(m_velocity.facingRad, command.facingRad, share);
+  m_bodyVelocity = inBodyFrame(facingBefore);
+  m_commands.push_back(command);
   step();
-  const Eigen::RowVector3f control = controlOf(m_velocity, fps);
+  const Eigen::RowVector3f control = controlOf(m_bodyVelocity, fps);
   if (m_frames > 0) m_root = trajectoryFromControl(control.replicate(2, 1), m_root).back();
   m_poses.insert(m_poses.end(), m_pose.data(), m_pose.data() + m_pose.size());
   m_controls.insert(m_controls.end(), control.data(), control.data() + control.size());
@@ -97,6 +115,12 @@ std::vector<WayPoint> LiveRollout::walkedPath() const {
     point.facing = m_trajectory[t].heading;
     out.push_back(point);
   }
+  return out;
+}
+
+LiveRollout replay(std::shared_ptr<const MotionModel> model, const Steering& steering) {
+  LiveRollout out(std::move(model), steering.options);
+  for (const LiveCommand& command : steering.commands) out.advance(command);
   return out;
 }
 

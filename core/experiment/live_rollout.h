@@ -9,11 +9,13 @@
 
 namespace marey {
 
-/// Velocities of the root in its own frame.
+/// Velocities along the way, and where the body looks while it goes there.
 struct LiveCommand {
   double forwardMS = 0.0;
-  double sidewaysMS = 0.0;  ///< positive: to the left
-  double turnRadS = 0.0;    ///< positive: to the left
+  double sidewaysMS = 0.0;  ///< positive: to the left of the way
+  double turnRadS = 0.0;    ///< of the way and the body; positive: to the left
+  double facingRad = 0.0;   ///< of the body from the way ahead; positive: to the left
+  bool operator==(const LiveCommand&) const = default;
 };
 
 struct LiveOptions {
@@ -24,6 +26,12 @@ struct LiveOptions {
   double smoothingS = 0.3;  ///< time constant with which the velocity follows the command; 0: none
   LiveCommand begin = {};   ///< velocity at the start
   RootFrame start = {};
+};
+
+/// All that a steered motion was made by, besides its model: the same frames come of it again.
+struct Steering {
+  LiveOptions options;
+  std::vector<LiveCommand> commands;  ///< of every frame
 };
 
 /// Deterministic for model, options and the commands. With a constant command equal to `begin` it
@@ -40,6 +48,10 @@ class LiveRollout {
   int frameCount() const { return m_frames; }
   const MotionModel& model() const { return *m_model; }
   const LiveOptions& options() const { return m_options; }
+  /// What this motion was made by.
+  Steering steering() const { return {m_options, m_commands}; }
+  /// Root frames so far: the first one is LiveOptions::start.
+  const std::vector<RootFrame>& trajectory() const { return m_trajectory; }
   /// Of the last frame.
   const RootFrame& root() const { return m_root; }
   /// All frames so far, as a model sees them.
@@ -49,10 +61,13 @@ class LiveRollout {
 
  private:
   void step();
+  LiveCommand inBodyFrame(double facingBefore) const;
 
   std::shared_ptr<const MotionModel> m_model;
   LiveOptions m_options;
-  LiveCommand m_velocity;
+  LiveCommand m_velocity;               ///< smoothed, along the way
+  LiveCommand m_bodyVelocity;           ///< the same as the body makes it
+  std::vector<LiveCommand> m_commands;  ///< of all frames
   RolloutState m_state;
   Matrix m_window;  ///< [1, (context + 1 + lookahead) * C]
   Matrix m_pose;    ///< [1, D], of the last frame
@@ -62,5 +77,8 @@ class LiveRollout {
   std::vector<float> m_poses, m_controls;  ///< rows of all frames
   std::vector<RootFrame> m_trajectory;
 };
+
+/// Advances a new rollout by every command of `steering`. Throws as LiveRollout.
+LiveRollout replay(std::shared_ptr<const MotionModel> model, const Steering& steering);
 
 }  // namespace marey

@@ -9,6 +9,55 @@ namespace marey {
 namespace {
 /// Larger batches gain little and make cancelling slow.
 constexpr int kMostTogether = 64;
+
+/// Commands as runs of equal ones: hands hold keys for many frames.
+Json commandsToJson(const std::vector<LiveCommand>& commands) {
+  Json out = Json::array();
+  for (size_t i = 0; i < commands.size();) {
+    const LiveCommand& c = commands[i];
+    const auto end = std::find_if(commands.begin() + static_cast<std::ptrdiff_t>(i), commands.end(),
+                                  [&](const auto& other) { return other != c; });
+    const auto next = static_cast<size_t>(end - commands.begin());
+    out.push_back({{"frames", next - i},
+                   {"forward_m_s", c.forwardMS},
+                   {"sideways_m_s", c.sidewaysMS},
+                   {"turn_rad_s", c.turnRadS},
+                   {"facing_rad", c.facingRad}});
+    i = next;
+  }
+  return out;
+}
+
+SampleSet drawSteered(const MotionModel& model, const SampleRecipe& recipe, Progress& progress,
+                      const MotionSink& sink) {
+  SampleSet out{.recipe = recipe, .modelHash = model.info().hash};
+  // The model outlives the rollouts, which end here.
+  const std::shared_ptr<const MotionModel> borrowed(std::shared_ptr<const MotionModel>(), &model);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < recipe.samples; ++i) {
+    progress.throwIfCancelled();
+    Steering steering = *recipe.steering;
+    steering.options.seed = recipe.seed;
+    steering.options.temperature = recipe.system.temperature;
+    steering.options.sample += i;
+    const LiveRollout rollout = replay(borrowed, steering);
+    const FeatureSequence sequence = rollout.sequence();
+    std::vector<SampledMotion> motions{{std::make_shared<const Clip>(sampledClip(model, sequence)),
+                                        sequence.frameCount() > model.info().context
+                                            ? scoreSequence(model, sequence)
+                                            : ClipScore{}}};
+    out.wanted = rollout.trajectory();
+    out.motions.push_back(motions.front());
+    if (sink) sink(out.wanted, std::move(motions));
+    progress.report((i + 1.0) / recipe.samples);
+  }
+  const double spentS =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  out.framesPerSecond =
+      static_cast<double>(recipe.samples) * static_cast<double>(out.wanted.size()) / spentS;
+  return out;
+}
+
 }  // namespace
 
 Json toJson(const SampleRecipe& recipe) {
@@ -16,15 +65,22 @@ Json toJson(const SampleRecipe& recipe) {
   one.systems = {recipe.system};
   one.paths = {recipe.path};
   const Json document = toJson(one);
-  return {{"system", document["systems"][0]},
-          {"path", document["paths"][0]},
-          {"samples", recipe.samples},
-          {"seed", recipe.seed},
-          {"start", recipe.path.startFromClip ? "clip" : "mean"}};
+  Json out = {{"system", document["systems"][0]},
+              {"path", document["paths"][0]},
+              {"samples", recipe.samples},
+              {"seed", recipe.seed},
+              {"start", recipe.path.startFromClip ? "clip" : "mean"}};
+  if (recipe.steering)
+    out["steering"] = {{"warm_up_s", recipe.steering->options.warmUpS},
+                       {"smoothing_s", recipe.steering->options.smoothingS},
+                       {"sample", recipe.steering->options.sample},
+                       {"commands", commandsToJson(recipe.steering->commands)}};
+  return out;
 }
 
 SampleSet drawSampleSet(const MotionModel& model, const SampleRecipe& recipe, Progress& progress,
                         int chunk, const MotionSink& sink) {
+  if (recipe.steering) return drawSteered(model, recipe, progress, sink);
   SampleRequest request =
       requestFor(model, {.path = recipe.path.path.empty() ? recipe.path.name : recipe.path.path,
                          .wayPoints = recipe.path.wayPoints,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiment/document.h"
+#include "experiment/live_rollout.h"
 #include "experiment/path_choice.h"
 #include "model/scorer.h"
 
@@ -22,6 +23,8 @@ struct SampleRecipe {
   uint64_t seed = 1;
   double fps = 20.0;             ///< of the document; the model must have it
   std::filesystem::path folder;  ///< relative names start there
+  /// Of a steered motion, instead of the path, which only shows where it went.
+  std::shared_ptr<const Steering> steering = nullptr;
 
   bool operator==(const SampleRecipe&) const = default;
 };

@@ -6,6 +6,7 @@
 #include <QListWidget>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <map>
 
 #include "panels/plot_panel.h"
 #include "panels/value_table.h"
@@ -56,13 +57,26 @@ class DistributionsPanel : public PlotPanel {
     fillJoints(sets.front().clips.front()->skeleton);
     DistributionQuery query{
         .quantity = quantity(), .joints = chosenJoints(), .range = workspace().range()};
-    compute<DistributionResult>(
+    using Collected = std::pair<std::shared_ptr<const DistributionResult>, LinkedGrid>;
+    compute<Collected>(
         tr("Collecting joint samples"),
-        [sets, query](Progress& progress) { return distributionResult(sets, query, progress); },
-        [this](DistributionResult& result) {
-          m_result = std::move(result);
+        [sets, query, view = view()](Progress& progress) {
+          auto result =
+              std::make_shared<const DistributionResult>(distributionResult(sets, query, progress));
+          LinkedGrid grid = distributionGrid(*result, view);
+          return Collected{std::move(result), std::move(grid)};
+        },
+        [this, view = view()](Collected& collected) {
+          m_result = std::move(collected.first);
+          m_grids.clear();
+          m_grids[view] = std::move(collected.second);
           show();
         });
+  }
+
+  std::vector<ChartHighlight> curvesOf(const std::set<MotionId>& picked) const override {
+    return m_result ? distributionHighlights(*m_result, m_shownView, chart()->grid(), picked)
+                    : std::vector<ChartHighlight>{};
   }
 
   void rangeMoved() override { refreshSoon(); }
@@ -161,11 +175,26 @@ class DistributionsPanel : public PlotPanel {
     fillTable();
   }
 
+  DistributionView view() const { return static_cast<DistributionView>(m_view->currentIndex()); }
+
+  /// Densities of many samples take a while: those of a view are worked out beside the event loop.
   void redraw() {
     if (!m_result) return;
-    const bool overTime = m_view->currentIndex() == 2;
-    followTime(overTime);
-    showGrid(distributionGrid(*m_result, static_cast<DistributionView>(m_view->currentIndex())));
+    if (const auto known = m_grids.find(view()); known != m_grids.end()) {
+      m_shownView = view();
+      followTime(m_shownView == DistributionView::Envelope);
+      return showGrid(known->second);
+    }
+    // What is being collected comes as this view then.
+    if (computing()) return refreshSoon();
+    compute<LinkedGrid>(
+        tr("Drawing distributions"),
+        [result = m_result, view = view()](Progress&) { return distributionGrid(*result, view); },
+        [this, result = m_result, view = view()](LinkedGrid& grid) {
+          if (result != m_result) return;
+          m_grids[view] = std::move(grid);
+          redraw();
+        });
   }
 
   void showMap() {
@@ -204,7 +233,9 @@ class DistributionsPanel : public PlotPanel {
   BodyMap* m_map = nullptr;
   ValueTable* m_table = nullptr;
   QStringList m_names;
-  std::optional<DistributionResult> m_result;
+  std::shared_ptr<const DistributionResult> m_result;
+  std::map<DistributionView, LinkedGrid> m_grids;  ///< of the result
+  DistributionView m_shownView = DistributionView::Density;
   std::vector<DistributionRow> m_rows;
   bool m_following = false;  ///< the list is being set, not used
 };

@@ -20,9 +20,10 @@ class DiversityPanel : public PlotPanel {
     m_means->setWordWrap(true);
     m_means->setTextInteractionFlags(Qt::TextSelectableByMouse);
     content()->addWidget(m_means);
-    chart()->setToolTip(
-        tr("Root mean square joint distance in the root frame, mean over pairs of motions at equal "
-           "time from the start. Natural pairs follow different paths."));
+    chart()->setToolTip(tr(
+        "Root mean square joint distance in the root frame, mean over pairs of motions at equal "
+        "time from the start; of a picked motion, its mean distance from the others. Natural pairs "
+        "follow different paths."));
   }
 
  protected:
@@ -45,6 +46,10 @@ class DiversityPanel : public PlotPanel {
   }
 
   void rangeMoved() override { showMeans(); }
+
+  std::vector<ChartHighlight> curvesOf(const std::set<MotionId>& picked) const override {
+    return diversityHighlights(m_curves, picked);
+  }
 
  private:
   void showMeans() {

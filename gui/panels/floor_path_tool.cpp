@@ -38,7 +38,14 @@ std::optional<size_t> FloorPathTool::wayPointAt(const QPointF& at, const QSize& 
   return best;
 }
 
+void FloorPathTool::followPath() {
+  const std::string name = m_path.path() ? m_path.path()->name : std::string();
+  if (name != m_pathName || (m_chosen && *m_chosen >= m_path.points().size())) m_chosen.reset();
+  m_pathName = name;
+}
+
 bool FloorPathTool::press(const QPointF& at, const QSize& size) {
+  followPath();
   const auto found = wayPointAt(at, size);
   m_held = m_active && found.has_value();
   m_moved = false;
@@ -61,6 +68,7 @@ void FloorPathTool::drag(const QPointF& to, const QSize& size) {
 }
 
 bool FloorPathTool::add(const QPointF& at, const QSize& size) {
+  followPath();
   const auto place = m_scene.floorPoint(at.x(), at.y(), size.width(), size.height());
   if (!m_active || !place || place->norm() > 1000.0F || wayPointAt(at, size)) return false;
   m_path.edit(tr("Add way-point"),
@@ -69,7 +77,8 @@ bool FloorPathTool::add(const QPointF& at, const QSize& size) {
 }
 
 void FloorPathTool::removeChosen() {
-  if (!m_active || !m_chosen || *m_chosen >= m_path.points().size()) return;
+  followPath();
+  if (!m_active || !m_chosen) return;
   const size_t index = *m_chosen;
   m_chosen.reset();
   m_path.edit(tr("Remove way-point"), [index](PathEdit& edit) { edit.remove(index); });
@@ -92,7 +101,7 @@ void FloorPathTool::paint(QPainter& painter, const QSize& size, const Inks& inks
   const auto& points = m_path.points();
   painter.setRenderHint(QPainter::Antialiasing);
   for (size_t i = 0; i < points.size(); ++i) {
-    const bool chosen = m_chosen == i;
+    const bool chosen = m_chosen == i && m_path.path()->name == m_pathName;
     // Open discs stand for way-points that the path will get when it is edited.
     QColor fill = inks.accent;
     fill.setAlpha(m_path.drawn() || chosen ? (chosen ? 255 : 150) : 0);

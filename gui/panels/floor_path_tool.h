@@ -19,13 +19,11 @@ class FloorPathTool {
 
   void setActive(bool active);
   bool active() const { return m_active; }
-  std::optional<size_t> chosen() const { return m_chosen; }
 
   /// Takes hold of the way-point under the mouse; false where there is none.
   bool press(const QPointF& at, const QSize& size);
   void drag(const QPointF& to, const QSize& size);
   void release() { m_held = false; }
-  bool held() const { return m_held; }
   bool add(const QPointF& at, const QSize& size);
   void removeChosen();
   void paint(QPainter& painter, const QSize& size, const Inks& inks) const;
@@ -36,7 +34,11 @@ class FloorPathTool {
 
   CurrentPath& m_path;
   const render::LiveScene& m_scene;
+  /// Forgets a choice that was made on another path.
+  void followPath();
+
   bool m_active = false, m_held = false, m_moved = false;
+  std::string m_pathName;
   std::optional<size_t> m_chosen;
 };
 

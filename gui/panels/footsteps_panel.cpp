@@ -16,9 +16,10 @@ class FootstepsPanel : public PlotPanel {
     m_table = new ValueTable(this);
     m_table->setObjectName(QStringLiteral("footstepsTable"));
     content()->addWidget(m_table, 1);
-    chart()->setToolTip(
-        tr("The dot is v95, the smallest tolerance that finds 95 % of the highest count: the "
-           "further left, the more sharply the feet are planted."));
+    chart()->setToolTip(tr(
+        "The dot is v95, the smallest tolerance that finds 95 % of the highest count: the "
+        "further left, the more sharply the feet are planted. A picked motion counts as if all of "
+        "its set moved like it."));
     connect(m_table, &QTableWidget::cellClicked, this, [this](int row, int) {
       const auto key = static_cast<size_t>(m_table->keyOf(row));
       if (key < m_rows.size()) selectMotions(m_rows[key].ids, false);
@@ -32,32 +33,31 @@ class FootstepsPanel : public PlotPanel {
       return showHint(
           tr("No motion is visible: open natural clips or sample a path to count "
              "footsteps."));
-    const std::vector<int> feet = workspace().feet();
-    if (feet.empty())
-      return showHint(
-          tr("No feet were found in this skeleton: name them in the document's "
-             "settings to count footsteps."));
-    m_feet.clear();
-    const auto skeleton = workspace().skeleton();
-    for (const int foot : feet) m_feet.push_back(skeleton->names[static_cast<size_t>(foot)]);
-    const stats::FootstepOptions options{.feet = feet,
-                                         .stepCmS = workspace().experiment().toleranceStepCmS};
+    const Experiment& e = workspace().experiment();
+    const FootstepQuery query{.feet = e.feet, .stepCmS = e.toleranceStepCmS};
     const auto range = workspace().range();
     compute<std::vector<FootstepResult>>(
         tr("Counting footsteps"),
-        [sets, range, options](Progress& progress) {
-          return footstepResults(sets, range, options, progress);
+        [sets, range, query](Progress& progress) {
+          return footstepResults(sets, range, query, progress);
         },
-        [this](std::vector<FootstepResult>& results) { show(results); });
+        [this](std::vector<FootstepResult>& results) {
+          m_results = std::move(results);
+          show();
+        });
   }
 
   void rangeMoved() override { refreshSoon(); }
 
+  std::vector<ChartHighlight> curvesOf(const std::set<MotionId>& picked) const override {
+    return footstepHighlights(m_results, picked);
+  }
+
  private:
-  void show(const std::vector<FootstepResult>& results) {
-    if (results.empty()) return showHint(tr("No motion has frames inside the marked range."));
-    showGrid(footstepGrid(results));
-    m_rows = footstepRows(results, m_feet);
+  void show() {
+    if (m_results.empty()) return showHint(tr("No motion has frames inside the marked range."));
+    showGrid(footstepGrid(m_results));
+    m_rows = footstepRows(m_results);
     std::vector<std::vector<ValueCell>> cells;
     for (const FootstepRow& row : m_rows) {
       ValueCell duration = numberCell(row.durationMeanS, 2);
@@ -76,7 +76,7 @@ class FootstepsPanel : public PlotPanel {
   }
 
   ValueTable* m_table = nullptr;
-  std::vector<std::string> m_feet;
+  std::vector<FootstepResult> m_results;
   std::vector<FootstepRow> m_rows;
 };
 }  // namespace

@@ -45,10 +45,12 @@ std::vector<GaitRow> GaitRows::rows(double toleranceCmS) {
   m_leftOut = shown.size() > kMostMotions ? static_cast<int>(shown.size() - kMostMotions) : 0;
   shown.resize(std::min(shown.size(), kMostMotions));
   std::vector<GaitRow> out;
+  std::set<const Clip*> used;
   for (const MotionId& id : shown) {
     const MotionGroup& group = *m_workspace.group(id.group);
     const ClipPtr& clip = group.motions[static_cast<size_t>(id.index)].clip;
     const Entry& entry = entryOf(clip, toleranceCmS);
+    used.insert(clip.get());
     for (size_t f = 0; f < entry.feet.size(); ++f) {
       const int joint = entry.feet[f];
       GaitRow row{.motion = motionLabel(group, id.index),
@@ -64,6 +66,8 @@ std::vector<GaitRow> GaitRows::rows(double toleranceCmS) {
       out.push_back(std::move(row));
     }
   }
+  // Clips that are not shown any more are not held back.
+  std::erase_if(m_entries, [&](const auto& entry) { return !used.contains(entry.first); });
   return out;
 }
 

@@ -22,7 +22,7 @@ struct GaitRow {
   bool first = false;    ///< of its motion
 };
 
-/// Contacts are worked out once per clip and tolerance.
+/// Contacts are worked out once per clip and tolerance, and kept while the clip is shown.
 class GaitRows {
  public:
   explicit GaitRows(const Workspace& workspace) : m_workspace(workspace) {}

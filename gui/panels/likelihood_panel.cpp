@@ -4,7 +4,8 @@
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QPushButton>
-#include <set>
+#include <algorithm>
+#include <map>
 
 #include "panels/plot_panel.h"
 #include "plots/likelihood_data.h"
@@ -57,81 +58,84 @@ class LikelihoodPanel : public PlotPanel {
     }
     const auto sets = motionSets(w.groups());
     m_score->setEnabled(unscored && naturalSet(sets) != nullptr);
-    m_groups = likelihoodGroups(
+    m_groups = std::make_shared<const std::vector<LikelihoodGroup>>(likelihoodGroups(
         w.groups(), systems, [&w](const std::string& system) { return w.naturalScores(system); },
-        w.experiment().fps);
-    m_worst->setEnabled(!m_groups.empty());
-    if (m_groups.empty()) {
-      m_floorFiles.clear();  // the hint ends a reading of floors
+        w.experiment().fps));
+    m_pictures.clear();
+    m_worst->setEnabled(!m_groups->empty());
+    if (m_groups->empty())
       return showHint(
           tr("No log-likelihoods yet: sample a path, or press \"Score natural motion\" "
              "to see the natural clips under the models."));
-    }
-    readFloors(sets);
+    m_floorFiles.clear();
+    for (const ExperimentSystem& system : w.experiment().systems)
+      if (std::any_of(sets.begin(), sets.end(), [&](const MotionSet& set) {
+            return !set.natural && set.system == system.name;
+          }))
+        m_floorFiles.emplace_back(system.name, w.modelFile(system));
     redraw();
   }
 
-  void selectionMoved() override { showSelected(); }
+  std::vector<ChartHighlight> curvesOf(const std::set<MotionId>& picked) const override {
+    // Where every motion is a line of its own, that one lights up.
+    return everyMotion() || !m_shown ? std::vector<ChartHighlight>{}
+                                     : likelihoodHighlights(m_shown->groups, picked);
+  }
 
  private:
-  /// Models are read beside the event loop; their floors then join the picture.
-  void readFloors(const std::vector<MotionSet>& sets) {
-    std::set<std::string> wanted;
-    for (const MotionSet& set : sets)
-      if (!set.natural) wanted.insert(set.system);
-    std::vector<std::pair<std::string, std::string>> files;
-    for (const ExperimentSystem& system : workspace().experiment().systems)
-      if (wanted.contains(system.name))
-        files.emplace_back(system.name, workspace().modelFile(system));
-    if (files == m_floorFiles) return;
-    m_floorFiles = files;
-    m_floors.clear();
+  /// What is drawn, worked out beside the event loop.
+  struct Picture {
+    std::vector<LikelihoodGroup> groups;
+    std::vector<LikelihoodFloor> floors;
+    LinkedGrid grid;
+  };
+  using Kind = std::pair<bool, bool>;  ///< every motion, smoothed
+
+  bool everyMotion() const { return m_view->currentIndex() == 1; }
+
+  void redraw() {
+    if (!m_groups || m_groups->empty()) return;
+    const Kind kind{everyMotion(), m_smooth->isChecked()};
+    if (const auto known = m_pictures.find(kind); known != m_pictures.end())
+      return show(known->second);
     const Workspace* w = &workspace();
-    compute<std::vector<LikelihoodFloor>>(
-        tr("Reading likelihood floors"),
-        [w, files](Progress&) {
-          std::vector<LikelihoodFloor> floors;
-          for (const auto& [system, file] : files) {
-            try {
-              if (const auto nats = linearGaussianFloor(w->model(file)->info()))
-                floors.push_back({system, *nats});
-            } catch (const Error&) {
-              // A model that cannot be read is reported where it is sampled; it has no floor.
-            }
-          }
-          return floors;
+    compute<Picture>(
+        tr("Drawing log-likelihoods"),
+        [w, groups = m_groups, files = m_floorFiles, kind](Progress&) {
+          Picture out{.groups = *groups, .floors = readFloors(*w, files), .grid = {}};
+          if (kind.second) smooth(out.groups, kSmoothingS);
+          out.grid = likelihoodGrid(out.groups, out.floors, kind.first);
+          if (const auto worst = worstFrame(*groups, std::nullopt)) markWorst(out.grid, *worst);
+          return out;
         },
-        [this](std::vector<LikelihoodFloor>& floors) {
-          m_floors = std::move(floors);
-          redraw();
+        [this, kind](Picture& picture) {
+          const auto shared = std::make_shared<const Picture>(std::move(picture));
+          m_pictures[kind] = shared;
+          show(shared);
         });
   }
 
-  void redraw() {
-    if (m_groups.empty()) return;
-    m_shown = m_groups;
-    if (m_smooth->isChecked()) smooth(m_shown, kSmoothingS);
-    showGrid(likelihoodGrid(m_shown, m_floors, m_view->currentIndex() == 1));
-    showSelected();
+  static std::vector<LikelihoodFloor> readFloors(
+      const Workspace& workspace, const std::vector<std::pair<std::string, std::string>>& files) {
+    std::vector<LikelihoodFloor> floors;
+    for (const auto& [system, file] : files) {
+      try {
+        if (const auto nats = linearGaussianFloor(workspace.model(file)->info()))
+          floors.push_back({system, *nats});
+      } catch (const Error&) {
+        // A model that cannot be read is reported where it is sampled; it has no floor.
+      }
+    }
+    return floors;
   }
 
-  /// Single motions are no curves of the median view: they are laid over it.
-  void showSelected() {
-    constexpr size_t kMost = 24;
-    std::vector<ChartHighlight> highlights;
-    for (const LikelihoodGroup& group : m_shown)
-      for (const LikelihoodRun& run : group.runs) {
-        if (!workspace().selected(run.id) || highlights.size() >= kMost) continue;
-        ChartHighlight one{.chart = 0, .y = run.nats, .colour = group.look.colour};
-        for (size_t i = 0; i < run.nats.size(); ++i)
-          one.x.push_back((run.firstFrame + static_cast<double>(i)) / group.fps);
-        highlights.push_back(std::move(one));
-      }
-    chart()->setHighlights(std::move(highlights));
+  void show(const std::shared_ptr<const Picture>& picture) {
+    m_shown = picture;
+    showGrid(picture->grid);
   }
 
   void goToWorst() {
-    const auto worst = worstFrame(m_groups, workspace().range());
+    const auto worst = worstFrame(*m_groups, workspace().range());
     if (!worst) return;
     selectMotions({worst->id}, false);
     workspace().setTime(worst->timeS);
@@ -140,8 +144,9 @@ class LikelihoodPanel : public PlotPanel {
   QComboBox* m_view = nullptr;
   QCheckBox* m_smooth = nullptr;
   QPushButton *m_score = nullptr, *m_worst = nullptr;
-  std::vector<LikelihoodGroup> m_groups, m_shown;  ///< as scored; as drawn
-  std::vector<LikelihoodFloor> m_floors;
+  std::shared_ptr<const std::vector<LikelihoodGroup>> m_groups;  ///< as scored
+  std::map<Kind, std::shared_ptr<const Picture>> m_pictures;     ///< of these groups
+  std::shared_ptr<const Picture> m_shown;
   std::vector<std::pair<std::string, std::string>> m_floorFiles;
 };
 }  // namespace

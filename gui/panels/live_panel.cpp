@@ -2,166 +2,92 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QElapsedTimer>
 #include <QFormLayout>
-#include <QGridLayout>
-#include <QKeyEvent>
 #include <QLabel>
 #include <QPointer>
 #include <QPushButton>
-#include <QToolButton>
+#include <QTimer>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <numbers>
 
+#include "panels/live_controls.h"
 #include "panels/live_session.h"
 #include "panels/paint_style.h"
 #include "panels/stick_view.h"
+
+#include "stats/sample_distance.h"
 
 namespace marey::gui {
 namespace {
 
 constexpr int kDrawEveryMs = 16, kSceneEveryMs = 50;
-constexpr size_t kLatencies = 400;
+constexpr size_t kRemembered = 400;
+/// Of a session that goes on, the scene shows this much: its cost then does not grow.
+constexpr double kSceneS = 20.0;
+/// Frames come a little late at times; a rate this close to the wanted one is held.
+constexpr double kHeld = 0.95;
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
+double quantileOf(const std::deque<double>& values, double share) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  return stats::sortedQuantile(sorted, share);
+}
+
+void remember(std::deque<double>& values, double value) {
+  values.push_back(value);
+  if (values.size() > kRemembered) values.pop_front();
 }
 
 class LivePanel : public QWidget {
  public:
   LivePanel(Workspace& workspace, QWidget* parent) : QWidget(parent), m_workspace(workspace) {
     setFocusPolicy(Qt::StrongFocus);
-    setProperty("keys", QStringList{tr("Arrow keys\tLive: walk and turn (panel in focus)"),
-                                    tr("Shift+Left, Shift+Right\tLive: walk sideways")});
+    setProperty("keys", QStringList{tr("Arrow keys\tLive: walk and turn, while a session runs"),
+                                    tr("Shift+Left, Shift+Right\tLive: walk sideways"),
+                                    tr("Ctrl+Left, Ctrl+Right\tLive: look aside")});
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(kMargin, kMargin, kMargin, kMargin);
     m_view = new StickView(this);
     m_view->setObjectName(QStringLiteral("liveView"));
-    m_view->setHint(tr("Start, then steer with the arrow keys; with Shift, sideways."));
+    m_view->setHint(tr("Start, then steer with the arrow keys or a gamepad."));
     // Side by side: docks are wide rather than high.
     auto* controls = new QVBoxLayout;
     controls->addLayout(buildForm());
-    controls->addLayout(buildPad());
+    m_controls = new LiveControls(this);
+    controls->addWidget(m_controls);
     controls->addStretch(1);
     auto* row = new QHBoxLayout;
     row->addWidget(m_view, 1);
     row->addLayout(controls);
     layout->addLayout(row, 1);
     layout->addLayout(buildButtons());
-    m_latency = new QLabel(this);
-    m_latency->setObjectName(QStringLiteral("liveLatency"));
-    m_latency->setWordWrap(true);
-    layout->addWidget(m_latency);
+    m_rate = new QLabel(this);
+    m_rate->setObjectName(QStringLiteral("liveLatency"));
+    m_rate->setWordWrap(true);
+    layout->addWidget(m_rate);
     m_timer.setInterval(kDrawEveryMs);
     connect(&m_timer, &QTimer::timeout, this, &LivePanel::takeNews);
     connect(&workspace, &Workspace::documentChanged, this, &LivePanel::refresh);
+    connect(&workspace, &Workspace::documentOpened, this, &LivePanel::forget);
+    connect(m_controls, &LiveControls::changed, this, &LivePanel::steer);
     refresh();
   }
 
- protected:
-  bool event(QEvent* event) override {
-    // Arrow keys are shortcuts of the window otherwise (frame by frame).
-    if (event->type() == QEvent::ShortcutOverride && m_session &&
-        steers(static_cast<QKeyEvent*>(event)->key())) {
-      event->accept();
-      return true;
-    }
-    return QWidget::event(event);
-  }
-
-  void keyPressEvent(QKeyEvent* event) override {
-    if (!steers(event->key())) return QWidget::keyPressEvent(event);
-    m_keys.insert(event->key());
-    steer(event->modifiers().testFlag(Qt::ShiftModifier) || event->key() == Qt::Key_Shift);
-  }
-
-  void keyReleaseEvent(QKeyEvent* event) override {
-    if (!steers(event->key())) return QWidget::keyReleaseEvent(event);
-    if (!event->isAutoRepeat()) m_keys.erase(event->key());
-    steer(event->modifiers().testFlag(Qt::ShiftModifier) && event->key() != Qt::Key_Shift);
-  }
-
-  void focusOutEvent(QFocusEvent* event) override {
-    m_keys.clear();  // their release goes elsewhere
-    steer(false);
-    QWidget::focusOutEvent(event);
-  }
-
  private:
-  static bool steers(int key) {
-    return key == Qt::Key_Up || key == Qt::Key_Down || key == Qt::Key_Left ||
-           key == Qt::Key_Right || key == Qt::Key_Shift;
-  }
-
-  QDoubleSpinBox* number(const char* name, double value, double most, const QString& unit) {
-    auto* box = new QDoubleSpinBox(this);
-    box->setObjectName(QLatin1String(name));
-    box->setRange(0.0, most);
-    box->setSingleStep(most / 40.0);
-    box->setValue(value);
-    box->setSuffix(unit);
-    return box;
-  }
-
   QLayout* buildForm() {
     auto* form = new QFormLayout;
     m_models = new QComboBox(this);
     m_models->setObjectName(QStringLiteral("liveModels"));
-    m_speed = number("liveSpeed", 1.2, 4.0, tr(" m/s"));
-    m_sideways = number("liveSideways", 0.5, 4.0, tr(" m/s"));
-    m_turn = number("liveTurn", 60.0, 360.0, tr(" °/s"));
     m_inScene = new QCheckBox(tr("Show in the scene"), this);
     m_inScene->setObjectName(QStringLiteral("liveInScene"));
     m_inScene->setChecked(true);
     form->addRow(tr("Model"), m_models);
-    form->addRow(tr("Speed"), m_speed);
-    form->addRow(tr("Sideways"), m_sideways);
-    form->addRow(tr("Turn"), m_turn);
     form->addRow({}, m_inScene);
     return form;
-  }
-
-  /// A pad for the mouse: arrows, and sideways in the lower corners.
-  QLayout* buildPad() {
-    auto* grid = new QGridLayout;
-    struct Button {
-      const char* name;
-      QString text, tip;
-      int row, column, key;
-      bool shift;
-    };
-    const Button buttons[] = {
-        {"livePadUp", QStringLiteral("▲"), tr("Forward"), 0, 1, Qt::Key_Up, false},
-        {"livePadLeft", QStringLiteral("↶"), tr("Turn left"), 1, 0, Qt::Key_Left, false},
-        {"livePadDown", QStringLiteral("▼"), tr("Backward"), 1, 1, Qt::Key_Down, false},
-        {"livePadRight", QStringLiteral("↷"), tr("Turn right"), 1, 2, Qt::Key_Right, false},
-        {"livePadSideLeft", QStringLiteral("◀"), tr("Sideways left"), 2, 0, Qt::Key_Left, true},
-        {"livePadSideRight", QStringLiteral("▶"), tr("Sideways right"), 2, 2, Qt::Key_Right, true}};
-    for (const Button& b : buttons) {
-      auto* button = new QToolButton(this);
-      button->setObjectName(QLatin1String(b.name));
-      button->setText(b.text);
-      button->setToolTip(b.tip);
-      button->setAccessibleName(b.tip);
-      button->setFocusPolicy(Qt::NoFocus);
-      button->setMinimumSize(34, 24);
-      grid->addWidget(button, b.row, b.column);
-      connect(button, &QToolButton::pressed, this, [this, key = b.key, shift = b.shift] {
-        m_keys.insert(key);
-        steer(shift);
-      });
-      connect(button, &QToolButton::released, this, [this, key = b.key] {
-        m_keys.erase(key);
-        steer(false);
-      });
-    }
-    return grid;
   }
 
   QLayout* buildButtons() {
@@ -178,15 +104,8 @@ class LivePanel : public QWidget {
     return row;
   }
 
-  void steer(bool sideways) {
-    const auto held = [this](int key) { return m_keys.contains(key) ? 1.0 : 0.0; };
-    const double ahead = held(Qt::Key_Up) - held(Qt::Key_Down);
-    const double left = held(Qt::Key_Left) - held(Qt::Key_Right);
-    if (m_session)
-      m_session->setCommand(
-          {.forwardMS = ahead * m_speed->value(),
-           .sidewaysMS = sideways ? left * m_sideways->value() : 0.0,
-           .turnRadS = sideways ? 0.0 : left * m_turn->value() * std::numbers::pi / 180.0});
+  void steer() {
+    if (m_session) m_session->setCommand(m_controls->command(), m_controls->fullDeflection());
   }
 
   void start() {
@@ -204,54 +123,88 @@ class LivePanel : public QWidget {
     }
     m_seed = e.seed;
     m_clips.assign(models.size(), {});
+    m_frameMs.assign(models.size(), {});
     m_latencies.clear();
-    m_session = std::make_unique<LiveSession>(std::move(models), LiveOptions{.seed = m_seed});
     m_kept.reset();
-    m_latency->setText(tr("Loading…"));
+    m_session = std::make_shared<LiveSession>(std::move(models), LiveOptions{.seed = m_seed});
+    m_rate->setText(tr("Loading…"));
     m_sinceScene.start();
     m_timer.start();
+    m_controls->setSteering(true);
+    steer();
     setFocus();
     refresh();
   }
 
+  /// Ends the session without waiting for its thread; what it has made until then may be kept.
   void stop() {
     if (!m_session) return;
     m_timer.stop();
-    m_session->stop();
+    m_controls->setSteering(false);
+    m_session->requestStop();
     takeFrames();
     m_kept = std::move(m_session);
     showInScene();
+    endBeside(m_kept);
+    refresh();
+  }
+
+  /// The last holder of a session waits for its thread: that must not be the window.
+  void endBeside(const std::shared_ptr<LiveSession>& session) {
+    m_workspace.jobs().start(Lane::Files, tr("Ending live control"),
+                             [session](Progress&) { session->stop(); });
+  }
+
+  /// Another document: nothing of the old one's session goes on or may be kept.
+  void forget() {
+    m_groups.clear();  // gone with the old document
+    if (m_session) {
+      m_timer.stop();
+      m_controls->setSteering(false);
+      m_session->requestStop();
+      endBeside(m_session);
+    }
+    m_session.reset();
+    m_kept.reset();
+    m_clips.clear();
+    m_rate->clear();
+    m_view->setFigures({});
     refresh();
   }
 
   void takeNews() {
-    const std::string error = takeFrames();
-    if (!error.empty()) {
+    const LiveNews news = takeFrames();
+    if (!news.error.empty()) {
       stop();
-      m_workspace.report(tr("Live control"), QString::fromStdString(error));
+      m_workspace.report(tr("Live control"), QString::fromStdString(news.error));
       return;
     }
-    showLatency();
     if (!m_clips.empty() && !m_clips.front().positions.empty()) showFigures();
+    if (news.commandAt) {
+      m_view->repaint();  // now: the time until the picture stands is what is measured
+      remember(
+          m_latencies,
+          std::chrono::duration<double, std::milli>(LiveClock::now() - *news.commandAt).count());
+    }
+    showRates(news);
     // What the other views cost is theirs to say: at most half of the time goes to them.
     if (m_inScene->isChecked() && m_sinceScene.hasExpired(std::max(kSceneEveryMs, 2 * m_sceneMs)))
       showInScene();
   }
 
-  std::string takeFrames() {
-    const LiveNews news = m_session->take();
+  LiveNews takeFrames() {
+    LiveNews news = m_session->take();
     m_heading = news.heading;
-    for (size_t i = 0; i < news.frames.size(); ++i) {
+    for (size_t i = 0; i < news.models.size(); ++i) {
       Clip& clip = m_clips[i];
       clip.name = fmt::format("live_{:03}", i);
-      clip.skeleton = news.skeleton;
+      clip.skeleton = news.models[i].skeleton;
       clip.fps = news.fps;
-      for (const auto& frame : news.frames[i])
+      for (const auto& frame : news.models[i].frames)
         clip.positions.insert(clip.positions.end(), frame.begin(), frame.end());
+      for (const double ms : news.models[i].frameMs) remember(m_frameMs[i], ms);
     }
-    m_latencies.insert(m_latencies.end(), news.latencyMs.begin(), news.latencyMs.end());
-    while (m_latencies.size() > kLatencies) m_latencies.pop_front();
-    return news.error;
+    return news;
   }
 
   void showFigures() {
@@ -277,25 +230,43 @@ class LivePanel : public QWidget {
     return shownColour(render::colourOf(colourIndexAt(i)), isDark(palette()));
   }
 
-  void showLatency() {
-    if (m_latencies.empty()) return;
-    const std::vector<double> all(m_latencies.begin(), m_latencies.end());
-    const double median = quantile(all, 0.5);
-    m_latency->setText(
-        tr("%1 ms per frame (median), %2 ms (95 %) – up to %3 frames/s; played at %4")
-            .arg(median, 0, 'f', 1)
-            .arg(quantile(all, 0.95), 0, 'f', 1)
-            .arg(1000.0 / std::max(median, 1e-3), 0, 'f', 0)
-            .arg(m_clips.front().fps, 0, 'g', 4));
+  void showRates(const LiveNews& news) {
+    if (news.fps <= 0.0 || m_frameMs.front().empty()) return;
+    QStringList parts;
+    for (size_t i = 0; i < m_frameMs.size(); ++i)
+      parts << tr("%1: up to %2 frames/s")
+                   .arg(QString::fromStdString(m_systems[i].name))
+                   .arg(1000.0 / std::max(quantileOf(m_frameMs[i], 0.5), 1e-3), 0, 'f', 0);
+    parts << (news.madePerS >= kHeld * news.fps
+                  ? tr("%1 frames/s are held").arg(news.fps, 0, 'g', 4)
+                  : tr("<b>%1 of %2 frames/s</b>: time is stretched")
+                        .arg(news.madePerS, 0, 'f', 1)
+                        .arg(news.fps, 0, 'g', 4));
+    if (!m_latencies.empty())
+      parts << tr("command to picture %1 ms (median), %2 ms (95 %)")
+                   .arg(quantileOf(m_latencies, 0.5), 0, 'f', 0)
+                   .arg(quantileOf(m_latencies, 0.95), 0, 'f', 0);
+    if (news.gamepad) parts << tr("gamepad connected");
+    m_rate->setText(parts.join(QStringLiteral(" · ")));
+  }
+
+  /// All of an ended session, and the last seconds of one that goes on.
+  Clip shownPart(const Clip& clip) const {
+    const int frames = clip.frameCount();
+    const int most = m_session ? static_cast<int>(kSceneS * clip.fps) : frames;
+    return frames > most ? sliceFrames(clip, frames - most, frames) : clip;
   }
 
   void showInScene() {
     if (!m_inScene->isChecked()) return;
     QElapsedTimer clock;
     clock.start();
+    double endS = 0.0;
     for (size_t i = 0; i < m_clips.size(); ++i) {
       if (m_clips[i].positions.empty()) continue;
-      const std::vector<Motion> motions{{std::make_shared<const Clip>(m_clips[i]), {}, true}};
+      const std::vector<Motion> motions{
+          {std::make_shared<const Clip>(shownPart(m_clips[i])), {}, true}};
+      endS = std::max(endS, (motions.front().clip->frameCount() - 1) / motions.front().clip->fps);
       if (i < m_groups.size() && m_workspace.group(m_groups[i]) != nullptr)
         m_workspace.setMotions(m_groups[i], motions);
       else if (i >= m_groups.size())
@@ -309,7 +280,7 @@ class LivePanel : public QWidget {
                                                  .wanted = {},
                                                  .motions = motions}));
     }
-    if (m_clips.front().frameCount() > 0) m_workspace.setTime(m_clips.front().seconds());
+    if (endS > 0.0) m_workspace.setTime(endS);
     m_sceneMs = static_cast<int>(clock.elapsed());
     m_sinceScene.start();
   }
@@ -333,6 +304,7 @@ class LivePanel : public QWidget {
     m_workspace.jobs().start(
         Lane::Models, tr("Keeping the steered motion"),
         [groups, base, colours, systems = m_systems, session = m_kept](Progress& progress) {
+          session->stop();
           for (size_t i = 0; i < session->rollouts().size(); ++i) {
             progress.throwIfCancelled();
             groups->push_back(keptGroup(session->rollouts()[i], systems[i], base, colours[i]));
@@ -370,25 +342,23 @@ class LivePanel : public QWidget {
   Workspace& m_workspace;
   StickView* m_view = nullptr;
   QComboBox* m_models = nullptr;
-  QDoubleSpinBox* m_speed = nullptr;
-  QDoubleSpinBox* m_sideways = nullptr;
-  QDoubleSpinBox* m_turn = nullptr;
+  LiveControls* m_controls = nullptr;
   QCheckBox* m_inScene = nullptr;
   QPushButton* m_start = nullptr;
   QPushButton* m_keep = nullptr;
-  QLabel* m_latency = nullptr;
+  QLabel* m_rate = nullptr;
   QTimer m_timer;
-  std::set<int> m_keys;  ///< held down
   std::vector<ExperimentSystem> m_systems;
   uint64_t m_seed = 1;
   std::vector<Clip> m_clips;
-  std::vector<int> m_groups;  ///< of the workspace, one per model
-  std::deque<double> m_latencies;
+  std::vector<int> m_groups;                  ///< of the workspace, one per model
+  std::vector<std::deque<double>> m_frameMs;  ///< of every model
+  std::deque<double> m_latencies;             ///< from a command to its picture, ms
   QElapsedTimer m_sinceScene;
   int m_sceneMs = 0;
   double m_heading = 0.0, m_yaw = std::numbers::pi;
   std::shared_ptr<LiveSession> m_kept;  ///< ended, and may still be kept
-  std::unique_ptr<LiveSession> m_session;
+  std::shared_ptr<LiveSession> m_session;
 };
 
 }  // namespace

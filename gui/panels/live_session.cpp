@@ -1,6 +1,7 @@
 #include "panels/live_session.h"
 
-#include <chrono>
+#include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 #include "model/sampler.h"
@@ -8,12 +9,25 @@
 
 namespace marey::gui {
 namespace {
-using Clock = std::chrono::steady_clock;
-}
+constexpr std::chrono::milliseconds kReadPadEvery{5};
+/// Axes of a pad: left stick, right stick.
+constexpr size_t kAcross = 0, kDown = 1, kLook = 3;
 
-LiveSession::LiveSession(std::vector<LiveModel> models, const LiveOptions& options)
+/// Left stick: ahead and turn; right stick: where the body looks.
+LiveCommand added(const LiveCommand& keys, const GamepadState& pad, const LiveCommand& full) {
+  LiveCommand out = keys;
+  out.forwardMS -= pad.axes[kDown] * full.forwardMS;
+  out.turnRadS -= pad.axes[kAcross] * full.turnRadS;
+  out.facingRad -= pad.axes[kLook] * full.facingRad;
+  return out;
+}
+}  // namespace
+
+LiveSession::LiveSession(std::vector<LiveModel> models, const LiveOptions& options,
+                         std::vector<std::string> gamepads)
     : m_models(std::move(models)),
       m_options(options),
+      m_gamepad(std::move(gamepads)),
       m_thread([this](const std::stop_token& stop) { run(stop); }) {}
 
 LiveSession::~LiveSession() {
@@ -21,30 +35,42 @@ LiveSession::~LiveSession() {
 }
 
 void LiveSession::stop() {
-  m_thread.request_stop();
+  requestStop();
+  const std::lock_guard lock(m_joining);
   if (m_thread.joinable()) m_thread.join();
 }
 
-void LiveSession::setCommand(const LiveCommand& command) {
+void LiveSession::setCommand(const LiveCommand& command, const LiveCommand& fullDeflection) {
   const std::lock_guard lock(m_mutex);
+  if (command != m_command && !m_commandAt) m_commandAt = LiveClock::now();
   m_command = command;
+  m_fullDeflection = fullDeflection;
+}
+
+void LiveSession::readGamepad() {
+  const GamepadState& state = m_gamepad.poll();
+  const std::lock_guard lock(m_mutex);
+  if (state == m_pad) return;
+  if (state.axes != m_pad.axes && !m_commandAt) m_commandAt = LiveClock::now();
+  m_pad = state;
+  m_news.gamepad = state.connected;
 }
 
 LiveNews LiveSession::take() {
   const std::lock_guard lock(m_mutex);
-  LiveNews out = std::move(m_news);
-  m_news = {.frames = {},
-            .latencyMs = {},
-            .heading = out.heading,
-            .skeleton = out.skeleton,
-            .fps = out.fps,
-            .error = out.error};
-  m_news.frames.resize(out.frames.size());
+  LiveNews out = m_news;
+  for (LiveModelNews& model : m_news.models) {
+    model.frames.clear();
+    model.frameMs.clear();
+  }
+  m_news.commandAt.reset();
   return out;
 }
 
-void LiveSession::prepare() {
+/// False where it was asked to stop.
+bool LiveSession::prepare(const std::stop_token& stop) {
   for (const LiveModel& model : m_models) {
+    if (stop.stop_requested()) return false;
     LiveOptions options = m_options;
     options.temperature = model.temperature;
     m_rollouts.emplace_back(model.load(), options);
@@ -56,46 +82,68 @@ void LiveSession::prepare() {
   }
   if (m_rollouts.empty()) throw InputError({.path = "live"}, "a model", "none");
   const std::lock_guard lock(m_mutex);
-  m_news.frames.resize(m_rollouts.size());
-  m_news.skeleton = m_rollouts.front().model().info().skeleton;
+  for (const LiveRollout& rollout : m_rollouts)
+    m_news.models.push_back(
+        {.frames = {}, .frameMs = {}, .skeleton = rollout.model().info().skeleton});
   m_news.fps = m_rollouts.front().model().info().features.fps;
+  return true;
 }
 
-/// One frame of every model; returns the milliseconds it took.
-double LiveSession::advanceAll() {
+/// One frame of every model.
+void LiveSession::advanceAll() {
   LiveCommand command;
+  std::optional<LiveClock::time_point> commandAt;
   {
     const std::lock_guard lock(m_mutex);
-    command = m_command;
+    command = added(m_command, m_pad, m_fullDeflection);
+    commandAt = std::exchange(m_commandAt, std::nullopt);
   }
-  const auto begin = Clock::now();
   std::vector<std::vector<Vec3>> frames;
-  for (LiveRollout& rollout : m_rollouts) frames.push_back(rollout.advance(command));
-  const double ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  std::vector<double> ms;
+  for (LiveRollout& rollout : m_rollouts) {
+    const auto begin = LiveClock::now();
+    frames.push_back(rollout.advance(command));
+    ms.push_back(std::chrono::duration<double, std::milli>(LiveClock::now() - begin).count());
+  }
+  const auto now = LiveClock::now();
+  m_made.push_back(now);
+  std::erase_if(m_made, [now](const auto& t) { return now - t > std::chrono::seconds(1); });
   const std::lock_guard lock(m_mutex);
-  for (size_t i = 0; i < frames.size(); ++i) m_news.frames[i].push_back(std::move(frames[i]));
-  m_news.latencyMs.push_back(ms);
+  for (size_t i = 0; i < frames.size(); ++i) {
+    m_news.models[i].frames.push_back(std::move(frames[i]));
+    m_news.models[i].frameMs.push_back(ms[i]);
+  }
+  if (!m_news.commandAt) m_news.commandAt = commandAt;
+  const std::chrono::duration<double> span = now - m_made.front();
+  m_news.madePerS =
+      span.count() > 0.0 ? static_cast<double>(m_made.size() - 1) / span.count() : 0.0;
   m_news.heading = m_rollouts.front().root().heading;
-  return ms;
 }
 
 void LiveSession::run(const std::stop_token& stop) {
   try {
-    prepare();
-    const auto period = std::chrono::duration_cast<Clock::duration>(
-        std::chrono::duration<double>(1.0 / m_rollouts.front().model().info().features.fps));
-    auto next = Clock::now();
-    while (!stop.stop_requested()) {
-      advanceAll();
-      next = std::max(next + period, Clock::now());
-      std::mutex none;
-      std::unique_lock lock(none);
-      m_wake.wait_until(lock, stop, next, [] { return false; });
+    if (prepare(stop)) {
+      const auto period = std::chrono::duration_cast<LiveClock::duration>(
+          std::chrono::duration<double>(1.0 / m_rollouts.front().model().info().features.fps));
+      auto next = LiveClock::now();
+      while (!stop.stop_requested()) {
+        readGamepad();
+        advanceAll();
+        next = std::max(next + period, LiveClock::now());
+        while (!stop.stop_requested() && LiveClock::now() < next) {
+          std::mutex none;
+          std::unique_lock lock(none);
+          m_wake.wait_until(lock, stop, std::min(next, LiveClock::now() + kReadPadEvery),
+                            [] { return false; });
+          readGamepad();
+        }
+      }
     }
   } catch (const std::exception& error) {
     const std::lock_guard lock(m_mutex);
     m_news.error = error.what();
   }
+  m_ended = true;
 }
 
 MotionGroup keptGroup(const LiveRollout& rollout, const ExperimentSystem& system,
@@ -105,6 +153,7 @@ MotionGroup keptGroup(const LiveRollout& rollout, const ExperimentSystem& system
   if (sequence.frameCount() > rollout.model().info().context)
     motion.score = scoreSequence(rollout.model(), sequence);
   recipe.system = system;
+  recipe.steering = std::make_shared<const Steering>(rollout.steering());
   recipe.path = {.name = "steered", .path = {}, .wayPoints = rollout.walkedPath(), .seconds = 0};
   return {.name = system.name + " – steered",
           .system = system.name,
@@ -112,7 +161,7 @@ MotionGroup keptGroup(const LiveRollout& rollout, const ExperimentSystem& system
           .pinned = true,
           .recipe = recipe,
           .modelHash = rollout.model().info().hash,
-          .wanted = trajectoryFromControl(sequence.control, sequence.start),
+          .wanted = rollout.trajectory(),
           .motions = {motion}};
 }
 

@@ -68,10 +68,8 @@ std::vector<double> likelihoodPerFrame(const Clip& clip, const ClipScore& score,
   return out;
 }
 
-const std::vector<double>& RootSpeeds::of(const std::shared_ptr<const Clip>& clip) {
-  Entry& entry = m_entries[clip.get()];
-  if (!entry.clip) entry = {clip, curveOf(floorTrack(*clip), clip->fps).speedMS};
-  return entry.speeds;
+std::vector<double> rootSpeeds(const Clip& clip) {
+  return curveOf(floorTrack(clip), clip.fps).speedMS;
 }
 
 }  // namespace marey::gui

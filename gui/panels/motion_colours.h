@@ -1,8 +1,6 @@
 // Colours of motions by a value of every frame, on a scale that colour-blind people read too.
 #pragma once
 
-#include <map>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,17 +28,7 @@ std::vector<render::Colour> coloursOf(const std::vector<double>& values, const S
 /// Nats at every frame of the clip, from a score at `modelFps`; NaN where nothing was scored.
 std::vector<double> likelihoodPerFrame(const Clip& clip, const ClipScore& score, double modelFps);
 
-/// Floor speeds of roots, m/s at every frame, worked out once per clip.
-class RootSpeeds {
- public:
-  const std::vector<double>& of(const std::shared_ptr<const Clip>& clip);
-
- private:
-  struct Entry {
-    std::shared_ptr<const Clip> clip;  ///< kept, so that its address stays its own
-    std::vector<double> speeds;
-  };
-  std::map<const Clip*, Entry> m_entries;
-};
+/// Floor speed of the root, m/s at every frame.
+std::vector<double> rootSpeeds(const Clip& clip);
 
 }  // namespace marey::gui

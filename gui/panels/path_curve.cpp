@@ -5,19 +5,9 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "stats/sample_distance.h"
 
 namespace marey::gui {
-namespace {
-
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto k = static_cast<size_t>(at);
-  const double next = sorted[std::min(k + 1, sorted.size() - 1)];
-  return std::lerp(sorted[k], next, at - std::floor(at));
-}
-
-}  // namespace
-
 PathCurve curveOf(std::vector<RootFrame> frames, double fps) {
   PathCurve out{.frames = std::move(frames), .fps = fps, .speedMS = {}, .turnRadS = {}};
   const size_t count = out.frames.size();
@@ -40,8 +30,8 @@ Spread spreadOf(std::vector<double> values) {
   if (values.empty()) throw NumericError("a spread needs at least one value");
   std::sort(values.begin(), values.end());
   return {.minimum = values.front(),
-          .low = quantile(values, 0.05),
-          .high = quantile(values, 0.95),
+          .low = stats::sortedQuantile(values, 0.05),
+          .high = stats::sortedQuantile(values, 0.95),
           .maximum = values.back()};
 }
 

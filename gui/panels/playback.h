@@ -18,7 +18,6 @@ class Playback : public QObject {
   /// From the start again where the end has been reached. Nothing without motions.
   void setPlaying(bool playing);
   void setLoop(bool loop) { m_loop = loop; }
-  double speed() const { return m_speed; }
   void setSpeed(double factor);
   /// Stops, and goes to a frame at the document's rate so many away.
   void step(int frames);

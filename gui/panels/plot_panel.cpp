@@ -5,6 +5,7 @@
 #include <QShowEvent>
 #include <QStackedLayout>
 #include <algorithm>
+#include <utility>
 
 #include "plots/plot_recipe.h"
 
@@ -13,8 +14,6 @@
 namespace marey::gui {
 namespace {
 constexpr int kDebounceMs = 120;
-/// More curves over each other than this show nothing.
-constexpr size_t kHighlights = 24;
 }  // namespace
 
 PlotPanel::PlotPanel(Workspace& workspace, const QString& name, bool overTime, QWidget* parent)
@@ -47,8 +46,13 @@ PlotPanel::PlotPanel(Workspace& workspace, const QString& name, bool overTime, Q
     m_stale = !isVisible();
     if (!m_stale) refresh();
   });
-  connect(&workspace, &Workspace::visibilityChanged, this, &PlotPanel::refreshSoon);
-  connect(&workspace, &Workspace::motionsChanged, this, &PlotPanel::refreshSoon);
+  for (const auto changed : {&Workspace::visibilityChanged, &Workspace::motionsChanged})
+    connect(&workspace, changed, this, &PlotPanel::motionsMoved);
+  connect(&workspace.jobs(), &JobQueue::ended, this, [this](int job) {
+    if (job != m_job) return;
+    m_job = 0;
+    if (std::exchange(m_again, false)) refreshSoon();
+  });
   connect(&workspace, &Workspace::selectionChanged, this, [this] { selectionMoved(); });
   connect(&workspace, &Workspace::rangeChanged, this, [this] { rangeMoved(); });
   connect(m_chart, &ChartView::clicked, this, &PlotPanel::takeClick);
@@ -86,7 +90,32 @@ void PlotPanel::showTime() {
 
 void PlotPanel::refreshSoon() {
   m_stale = true;
-  m_timer.start();
+  // Never started anew: changes that keep coming would put it off for ever.
+  if (!m_timer.isActive()) m_timer.start();
+}
+
+void PlotPanel::motionsMoved() {
+  const Experiment& e = m_workspace.experiment();
+  Inputs now{.sets = motionSets(m_workspace.groups()),
+             .systems = e.systems,
+             .feet = e.feet,
+             .toleranceStepCmS = e.toleranceStepCmS,
+             .folder = e.folder};
+  const auto same = [](const MotionSet& a, const MotionSet& b) {
+    return a.ids == b.ids && a.clips == b.clips && a.name == b.name && a.system == b.system &&
+           a.colour == b.colour && a.dashed == b.dashed;
+  };
+  if (now.systems == m_inputs.systems && now.feet == m_inputs.feet &&
+      now.toleranceStepCmS == m_inputs.toleranceStepCmS && now.folder == m_inputs.folder &&
+      std::equal(now.sets.begin(), now.sets.end(), m_inputs.sets.begin(), m_inputs.sets.end(),
+                 same))
+    return;
+  m_inputs = std::move(now);
+  // While motions are being added, a plot of the first ones is worth more than none.
+  if (m_job != 0 && isVisible())
+    m_again = true;
+  else
+    refreshSoon();
 }
 
 void PlotPanel::showEvent(QShowEvent* event) {
@@ -98,6 +127,7 @@ void PlotPanel::showHint(const QString& sentence) {
   // What is still being worked out belongs to other motions.
   ++m_version;
   m_workspace.jobs().cancel(m_job);
+  m_again = false;
   m_hint->setText(sentence);
   m_pages->setCurrentIndex(0);
 }
@@ -116,16 +146,19 @@ void PlotPanel::showGrid(LinkedGrid grid) {
 
 void PlotPanel::showHighlights() {
   const std::set<MotionId>& selected = m_workspace.selection().motions;
-  std::vector<ChartHighlight> highlights;
+  std::vector<ChartHighlight> highlights =
+      selected.empty() ? std::vector<ChartHighlight>{} : curvesOf(selected);
+  const size_t most = highlights.size() + kMostHighlights;
   for (const auto& [curve, motions] : m_curves) {
     const auto& charts = m_chart->grid().charts;
     const auto& series =
         charts[static_cast<size_t>(curve.chart)].series[static_cast<size_t>(curve.series)];
-    const bool line =
-        series.kind == render::SeriesKind::Line || series.kind == render::SeriesKind::Cloud;
+    const bool line = series.kind == render::SeriesKind::Line ||
+                      series.kind == render::SeriesKind::Cloud ||
+                      series.kind == render::SeriesKind::Density;
     const bool all = std::all_of(motions.begin(), motions.end(),
                                  [&](const MotionId& id) { return selected.contains(id); });
-    if (!line || !all || highlights.size() >= kHighlights) continue;
+    if (!line || !all || highlights.size() >= most) continue;
     CurvePoints points = pointsOf(m_chart->grid(), curve);
     highlights.push_back({.chart = curve.chart,
                           .x = std::move(points.x),
@@ -145,7 +178,16 @@ void PlotPanel::takeClick(const ChartHit& hit, Qt::KeyboardModifiers modifiers) 
       selectMotions(motions, add);
     }
   }
-  if (m_overTime) m_workspace.setTime(hit.x);
+  if (!m_overTime) return;
+  double time = hit.x;
+  if (hit.curve) {
+    const auto& series = m_chart->grid().charts[static_cast<size_t>(hit.curve->chart)].series;
+    const auto index = static_cast<size_t>(hit.curve->series);
+    // A rule stands for one frame.
+    if (index < series.size() && series[index].kind == render::SeriesKind::VerticalRule)
+      time = series[index].x.front();
+  }
+  m_workspace.setTime(time);
 }
 
 void PlotPanel::selectMotions(const std::vector<MotionId>& motions, bool add) {

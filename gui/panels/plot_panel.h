@@ -30,9 +30,13 @@ class PlotPanel : public QWidget {
   /// Works out again what is shown; called when the motions have changed and the panel is visible.
   virtual void refresh() = 0;
   virtual void selectionMoved() { showHighlights(); }
+  /// The curves of picked motions that no curve of the chart is made of alone.
+  virtual std::vector<ChartHighlight> curvesOf(const std::set<MotionId>& /*picked*/) const {
+    return {};
+  }
   virtual void rangeMoved() {}
 
-  /// After a moment without further calls, and not while the panel is hidden.
+  /// Soon after the first of many calls, and not while the panel is hidden.
   void refreshSoon();
   Workspace& workspace() const { return m_workspace; }
   ChartView* chart() const { return m_chart; }
@@ -65,9 +69,20 @@ class PlotPanel : public QWidget {
         [result, take = std::move(take)] { take(**result); });
   }
 
+  bool computing() const { return m_job != 0; }
+
   void showEvent(QShowEvent* event) override;
 
  private:
+  /// What plots are made from; equal inputs give equal plots.
+  struct Inputs {
+    std::vector<MotionSet> sets;
+    std::vector<ExperimentSystem> systems;
+    std::string feet;
+    double toleranceStepCmS = 0.0;
+    std::filesystem::path folder;
+  };
+  void motionsMoved();
   void run(const QString& title, Job::Work work, std::function<void()> take);
   void takeClick(const ChartHit& hit, Qt::KeyboardModifiers modifiers);
   void linkTime();
@@ -83,9 +98,11 @@ class PlotPanel : public QWidget {
   std::map<CurveRef, std::vector<MotionId>> m_curves;
   QTimer m_timer;
   bool m_overTime = false;
-  bool m_stale = true;  ///< changed while hidden
-  int m_version = 0;    ///< of compute
-  int m_job = 0;
+  bool m_stale = true;   ///< changed while hidden
+  bool m_again = false;  ///< motions have changed while a plot of the earlier ones was worked out
+  Inputs m_inputs;
+  int m_version = 0;  ///< of compute
+  int m_job = 0;      ///< 0: nothing is worked out
 };
 
 }  // namespace marey::gui

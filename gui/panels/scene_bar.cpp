@@ -3,7 +3,9 @@
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QSignalBlocker>
 #include <QWidgetAction>
+#include <algorithm>
 
 #include "panels/paint_style.h"
 
@@ -26,6 +28,8 @@ SceneBar::SceneBar(SceneView& view, QWidget* shortcutOwner, QWidget* parent)
   layout->setSpacing(kSpacing);
   m_colour = addChoice(QStringLiteral("sceneColourBy"), tr("What the colours mean"),
                        {tr("By system"), tr("By sample"), tr("By log-likelihood"), tr("By speed")});
+  m_naturalUnder = addChoice(QStringLiteral("sceneNaturalUnder"),
+                             tr("The model under which natural motion is scored"), {});
   m_placement = addChoice(
       QStringLiteral("scenePlacement"),
       tr("Where the motions are: where they walk, all in their own root frame, or moved apart"),
@@ -54,6 +58,24 @@ SceneBar::SceneBar(SceneView& view, QWidget* shortcutOwner, QWidget* parent)
     apply();
   });
   connect(m_colour, qOverload<int>(&QComboBox::currentIndexChanged), this, &SceneBar::apply);
+  connect(m_naturalUnder, qOverload<int>(&QComboBox::activated), this, &SceneBar::apply);
+  connect(&m_view, &SceneView::settingsReplaced, this, [this] {
+    const QSignalBlocker quiet(m_placement);
+    m_placement->setCurrentIndex(static_cast<int>(m_view.settings().placement));
+  });
+  connect(&m_view.workspace(), &Workspace::documentChanged, this, &SceneBar::refreshSystems);
+  refreshSystems();
+}
+
+/// A choice of models matters only where there are several and likelihood is shown.
+void SceneBar::refreshSystems() {
+  const QString before = m_naturalUnder->currentText();
+  m_naturalUnder->clear();
+  for (const ExperimentSystem& system : m_view.workspace().experiment().systems)
+    m_naturalUnder->addItem(QString::fromStdString(system.name));
+  m_naturalUnder->setCurrentIndex(std::max(0, m_naturalUnder->findText(before)));
+  m_naturalUnder->setVisible(m_naturalUnder->count() > 1 &&
+                             m_colour->currentIndex() == static_cast<int>(ColourBy::Likelihood));
 }
 
 QComboBox* SceneBar::addChoice(const QString& name, const QString& toolTip,
@@ -175,29 +197,57 @@ QWidget* SceneBar::showForm(QWidget* parent) {
   m_opacity->setToolTip(tr("Opacity of motions, 5 to 100 %"));
   connect(m_opacity, &QSlider::valueChanged, this, &SceneBar::apply);
   rows->addRow(tr("Opacity"), m_opacity);
-  m_ghosts = new QDoubleSpinBox(form);
-  m_ghosts->setObjectName(QStringLiteral("sceneGhosts"));
-  m_ghosts->setRange(0.0, 10.0);
-  m_ghosts->setSingleStep(0.25);
-  m_ghosts->setSuffix(tr(" s"));
+  m_ghosts = addSeconds(form, "sceneGhosts", 0.0, 100.0, 0.0);
   m_ghosts->setSpecialValueText(tr("off"));
-  m_ghosts->setToolTip(tr("Paler figures every so many seconds, as on Marey's plates"));
-  connect(m_ghosts, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &SceneBar::apply);
-  rows->addRow(tr("Ghosts every"), m_ghosts);
+  m_ghosts->setToolTip(tr("Paler figures at this distance in time, as on Marey's plates"));
+  m_ghostUnit = new QComboBox(form);
+  m_ghostUnit->setObjectName(QStringLiteral("sceneGhostUnit"));
+  m_ghostUnit->addItems({tr("seconds"), tr("frames")});
+  connect(m_ghostUnit, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int frames) {
+    m_ghosts->setDecimals(frames ? 0 : 2);
+    m_ghosts->setSingleStep(frames ? 1.0 : 0.25);
+    apply();
+  });
+  auto* ghosts = new QHBoxLayout;
+  ghosts->addWidget(m_ghosts);
+  ghosts->addWidget(m_ghostUnit);
+  rows->addRow(tr("Ghosts every"), ghosts);
   m_trails = choice("sceneTrails", tr("Trails"), {tr("Off"), tr("Selected joint"), tr("Feet")});
+  m_trailS = addSeconds(form, "sceneTrailLength", 0.25, 60.0, 1.0);
+  m_trailS->setSuffix(tr(" s"));
+  m_trailS->setToolTip(tr("How long ago a trail begins"));
+  rows->addRow(tr("Trail length"), m_trailS);
   m_contacts = check("sceneContacts", tr("Foot contacts on the floor"), false);
   m_shadow = check("sceneShadow", tr("Shadow (S)"), true);
   m_path = check("scenePath", tr("Current path"), true);
   return form;
 }
 
+QDoubleSpinBox* SceneBar::addSeconds(QWidget* form, const char* name, double low, double high,
+                                     double value) {
+  auto* box = new QDoubleSpinBox(form);
+  box->setObjectName(QLatin1String(name));
+  box->setRange(low, high);
+  box->setSingleStep(0.25);
+  box->setValue(value);
+  connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &SceneBar::apply);
+  return box;
+}
+
 void SceneBar::apply() {
+  m_naturalUnder->setVisible(m_naturalUnder->count() > 1 &&
+                             m_colour->currentIndex() == static_cast<int>(ColourBy::Likelihood));
   SceneSettings settings;
   settings.colourBy = static_cast<ColourBy>(m_colour->currentIndex());
   settings.placement = static_cast<render::Placement>(m_placement->currentIndex());
   settings.detail = static_cast<render::BodyDetail>(m_detail->currentIndex());
   settings.opacity = m_opacity->value() / 100.0;
-  settings.ghostsS = m_ghosts->value();
+  if (m_ghostUnit->currentIndex() == 1)
+    settings.ghostFrames = static_cast<int>(m_ghosts->value());
+  else
+    settings.ghostsS = m_ghosts->value();
+  settings.trailS = m_trailS->value();
+  settings.naturalUnder = m_naturalUnder->currentText().toStdString();
   settings.trails = static_cast<Trails>(m_trails->currentIndex());
   settings.contacts = m_contacts->isChecked();
   settings.shadow = m_shadow->isChecked();

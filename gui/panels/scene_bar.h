@@ -30,12 +30,16 @@ class SceneBar : public QWidget {
   void buildViewMenu();
   void buildShowMenu();
   QWidget* showForm(QWidget* parent);
+  QDoubleSpinBox* addSeconds(QWidget* form, const char* name, double low, double high,
+                             double value);
+  void refreshSystems();
   void apply();
 
   SceneView& m_view;
   QWidget* m_owner;
   QComboBox *m_colour = nullptr, *m_placement = nullptr, *m_detail = nullptr, *m_trails = nullptr;
-  QDoubleSpinBox* m_ghosts = nullptr;
+  QComboBox *m_naturalUnder = nullptr, *m_ghostUnit = nullptr;
+  QDoubleSpinBox *m_ghosts = nullptr, *m_trailS = nullptr;
   QSlider* m_opacity = nullptr;
   QCheckBox *m_contacts = nullptr, *m_shadow = nullptr, *m_path = nullptr;
   QToolButton* m_edit = nullptr;

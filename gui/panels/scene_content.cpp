@@ -12,13 +12,6 @@ QString tr(const char* text) {
   return QCoreApplication::translate("Scene", text);
 }
 
-/// Natural motion has a likelihood only under a model: the first one whose scores are there.
-const std::vector<ClipScore>* scoresOfNatural(const Workspace& workspace) {
-  for (const ExperimentSystem& system : workspace.experiment().systems)
-    if (const auto* scores = workspace.naturalScores(system.name)) return scores;
-  return nullptr;
-}
-
 /// The rate of the models: that of their samples, where there is one.
 double modelRate(const Workspace& workspace) {
   for (const MotionGroup& group : workspace.groups())
@@ -36,32 +29,32 @@ const ClipScore* scoreOf(const MotionGroup& group, const MotionId& id,
   return &(*natural)[index];
 }
 
-std::vector<double> valuesOf(const Workspace& workspace, const SceneSettings& settings,
-                             const MotionId& id, RootSpeeds& speeds) {
-  const MotionGroup& group = *workspace.group(id.group);
-  const ClipPtr& clip = group.motions[static_cast<size_t>(id.index)].clip;
-  if (settings.colourBy == ColourBy::Speed) return speeds.of(clip);
-  const ClipScore* score = scoreOf(group, id, scoresOfNatural(workspace));
-  return score ? likelihoodPerFrame(*clip, *score, modelRate(workspace)) : std::vector<double>{};
-}
-
-void colourByValue(const Workspace& workspace, const SceneSettings& settings, RootSpeeds& speeds,
-                   SceneContent& content) {
-  std::vector<std::vector<double>> values;
-  std::vector<double> all;
-  bool missing = false;
-  for (const MotionId& id : content.ids) {
-    values.push_back(valuesOf(workspace, settings, id, speeds));
-    missing = missing || values.back().empty();
-    all.insert(all.end(), values.back().begin(), values.back().end());
-  }
-  content.scale = middleRange(std::move(all));
+void colourByValue(const Workspace& workspace, const SceneSettings& settings,
+                   MotionColouring& colouring, SceneContent& content) {
   const bool likelihood = settings.colourBy == ColourBy::Likelihood;
+  const std::string system = naturalSystem(workspace, settings);
+  const std::vector<ClipScore>* scores = likelihood ? workspace.naturalScores(system) : nullptr;
+  std::vector<ColourSource> sources;
+  bool missing = false, natural = false;
+  for (const MotionId& id : content.ids) {
+    const MotionGroup& group = *workspace.group(id.group);
+    sources.push_back({group.motions[static_cast<size_t>(id.index)].clip, nullptr});
+    if (likelihood) sources.back().score = scoreOf(group, id, scores);
+    missing = missing || (likelihood && !sources.back().score);
+    natural = natural || group.natural();
+  }
+  const MotionColours& colours = colouring.of(sources, settings.colourBy, modelRate(workspace));
+  content.scale = colours.scale;
   content.scaleTitle = likelihood ? tr("Log-likelihood (nats per frame)") : tr("Root speed (m/s)");
-  if (missing) content.note = tr("Grey: not scored yet");
-  for (size_t i = 0; i < values.size(); ++i) {
-    if (content.scale && !values[i].empty())
-      content.motions[i].frameColours = coloursOf(values[i], *content.scale);
+  QStringList notes;
+  if (likelihood && natural && !system.empty())
+    notes << tr("Natural motion under %1").arg(QString::fromStdString(system));
+  if (missing) notes << tr("Grey: not scored yet");
+  content.note = notes.join(QStringLiteral(" · "));
+  for (size_t i = 0; i < sources.size(); ++i) {
+    const auto known = colours.frames.find(sources[i].clip.get());
+    if (known != colours.frames.end())
+      content.motions[i].frameColours = known->second;
     else
       content.motions[i].colour = render::grey(0.6);
   }
@@ -77,6 +70,12 @@ void colourBySample(const Workspace& workspace, SceneContent& content) {
 }
 
 }  // namespace
+
+std::string naturalSystem(const Workspace& workspace, const SceneSettings& settings) {
+  if (workspace.systemIndex(settings.naturalUnder) >= 0) return settings.naturalUnder;
+  const auto& systems = workspace.experiment().systems;
+  return systems.empty() ? std::string() : systems.front().name;
+}
 
 QString motionLabel(const MotionGroup& group, int index) {
   const Motion& motion = group.motions.at(static_cast<size_t>(index));
@@ -95,7 +94,7 @@ std::vector<int> trailJoints(const Workspace& workspace, Trails trails) {
 }
 
 SceneContent sceneContent(const Workspace& workspace, const SceneSettings& settings,
-                          RootSpeeds& speeds) {
+                          MotionColouring& colouring) {
   SceneContent out;
   out.ids = workspace.visibleMotions();
   std::map<int, int> counts;
@@ -117,7 +116,7 @@ SceneContent sceneContent(const Workspace& workspace, const SceneSettings& setti
     colourBySample(workspace, out);
     out.note = tr("Colour: number of the sample, from dark to light");
   } else if (settings.colourBy != ColourBy::System) {
-    colourByValue(workspace, settings, speeds, out);
+    colourByValue(workspace, settings, colouring, out);
   }
   return out;
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "panels/motion_colours.h"
+#include "panels/motion_colouring.h"
 #include "shell/workspace.h"
 
 #include "render/live_scene.h"
@@ -22,7 +22,11 @@ struct SceneSettings {
   render::BodyDetail detail = render::BodyDetail::Auto;
   double opacity = 1.0;
   double ghostsS = 0.0;  ///< 0: none
+  int ghostFrames = 0;   ///< of the document's rate, instead of seconds; 0: by seconds
   Trails trails = Trails::Off;
+  double trailS = 1.0;
+  std::string
+      naturalUnder;  ///< the model whose likelihood of natural motion is shown; empty: first
   bool contacts = false;
   bool shadow = true;
   bool path = true;
@@ -43,7 +47,9 @@ struct SceneContent {
 };
 
 SceneContent sceneContent(const Workspace& workspace, const SceneSettings& settings,
-                          RootSpeeds& speeds);
+                          MotionColouring& colouring);
+/// The system under which natural motion is scored; empty where the document has none.
+std::string naturalSystem(const Workspace& workspace, const SceneSettings& settings);
 /// Title, unit and meaning for people; `index` is its number in the group.
 QString motionLabel(const MotionGroup& group, int index);
 /// Joints that draw trails.

@@ -18,6 +18,7 @@ class SceneOverlay : public QWidget {
   void setContent(const SceneContent* content) { m_content = content; }
   /// One sentence in the middle of an empty view.
   void setHint(const QString& hint);
+  const QString& hint() const { return m_hint; }
   /// What the mouse does now, along the lower edge; empty: nothing is shown.
   void setMode(const QString& text);
   void setHover(const QString& text, const QPoint& at);

@@ -20,9 +20,4 @@ QWidget* makeScenePanel(Workspace& workspace, QWidget* parent) {
   return panel;
 }
 
-QImage grabScene(QWidget& panel) {
-  auto* view = panel.findChild<SceneView*>();
-  return view ? view->picture() : QImage();
-}
-
 }  // namespace marey::gui

@@ -1,6 +1,5 @@
 #include "panels/scene_view.h"
 
-#include <QPainter>
 #include <algorithm>
 
 #include <vtkGenericOpenGLRenderWindow.h>
@@ -22,7 +21,8 @@ SceneView::SceneView(Workspace& workspace, QWidget* parent)
     : QVTKOpenGLNativeWidget(parent),
       m_workspace(workspace),
       m_path(new CurrentPath(workspace, this)),
-      m_tool(*m_path, m_scene) {
+      m_tool(*m_path, m_scene),
+      m_colouring(new MotionColouring(workspace, this)) {
   setObjectName(QStringLiteral("sceneView"));
   setMinimumSize(240, 180);
   setMouseTracking(true);
@@ -63,6 +63,7 @@ void SceneView::connectWorkspace() {
     m_scene.setTime(seconds);
     schedule();
   });
+  connect(m_colouring, &MotionColouring::changed, this, &SceneView::changeMotions);
   connect(m_path, &CurrentPath::changed, this, &SceneView::changeOptions);
 }
 
@@ -95,13 +96,34 @@ void SceneView::flush() {
 
 void SceneView::updateMotions() {
   m_trouble.clear();
-  m_content = sceneContent(m_workspace, m_settings, m_speeds);
+  SceneContent next = sceneContent(m_workspace, m_settings, *m_colouring);
   try {
-    m_scene.setMotions(m_content.motions);
+    m_scene.setMotions(next.motions);
   } catch (const Error& error) {
-    m_trouble = QString::fromUtf8(error.what());
+    if (m_settings.placement == render::Placement::World) {
+      m_trouble = QString::fromUtf8(error.what());
+      return;  // what is drawn, and may be picked, is what was there before
+    }
+    fallBack(error.what());
+    try {
+      m_scene.setMotions(next.motions);
+    } catch (const Error& other) {
+      m_trouble = QString::fromUtf8(other.what());
+      return;
+    }
   }
+  m_content = std::move(next);
   m_scene.setTime(m_workspace.time());
+}
+
+/// Every motion can be drawn where it is.
+void SceneView::fallBack(const std::string& why) {
+  m_trouble = QString::fromStdString(why);
+  m_settings.placement = render::Placement::World;
+  render::LiveOptions options = m_scene.options();
+  options.placement = render::Placement::World;
+  m_scene.setOptions(options);
+  Q_EMIT settingsReplaced();
 }
 
 void SceneView::fitNew() {
@@ -120,8 +142,11 @@ void SceneView::updateOptions() {
   render::LiveOptions options;
   options.placement = m_settings.placement;
   options.detail = m_settings.detail;
-  options.ghostsS = m_settings.ghostsS;
+  options.ghostsS = m_settings.ghostFrames > 0
+                        ? m_settings.ghostFrames / m_workspace.experiment().fps
+                        : m_settings.ghostsS;
   options.trailJoints = trailJoints(m_workspace, m_settings.trails);
+  options.trailS = m_settings.trailS;
   options.contactMarks = m_settings.contacts;
   options.shadow = m_settings.shadow;
   if (m_settings.path) options.path = m_path->frames();
@@ -130,7 +155,7 @@ void SceneView::updateOptions() {
   try {
     m_scene.setOptions(options);
   } catch (const Error& error) {
-    m_trouble = QString::fromUtf8(error.what());
+    fallBack(error.what());
     options.placement = render::Placement::World;
     m_scene.setOptions(options);
   }
@@ -139,7 +164,11 @@ void SceneView::updateOptions() {
 void SceneView::updateHint() {
   const bool empty = m_content.motions.empty();
   QString hint;
-  if (empty && m_workspace.groups().empty())
+  const auto& groups = m_workspace.groups();
+  // The natural group is there before any clip of it.
+  const bool nothing = std::all_of(groups.begin(), groups.end(),
+                                   [](const MotionGroup& g) { return g.motions.empty(); });
+  if (empty && nothing)
     hint = tr("Open motion files, or sample a model along the path, to see motions here.");
   else if (empty)
     hint = tr("All motions are hidden. Show some in the Motions panel.");
@@ -158,18 +187,8 @@ void SceneView::updateHint() {
 
 void SceneView::setSettings(const SceneSettings& settings) {
   const bool moved = settings.placement != m_settings.placement;
-  const bool toLikelihood =
-      settings.colourBy == ColourBy::Likelihood && m_settings.colourBy != ColourBy::Likelihood;
   m_settings = settings;
-  if (toLikelihood && !m_workspace.experiment().systems.empty()) {
-    const auto& groups = m_workspace.groups();
-    const bool natural = std::any_of(groups.begin(), groups.end(), [](const MotionGroup& g) {
-      return g.natural() && !g.motions.empty();
-    });
-    // Samples carry their scores; natural motion gets those under the first model.
-    const std::string& system = m_workspace.experiment().systems.front().name;
-    if (natural && !m_workspace.naturalScores(system)) m_workspace.scoreNatural(system);
-  }
+  if (settings.colourBy == ColourBy::Likelihood) scoreNatural();
   changeMotions();
   if (moved) {
     flush();
@@ -209,18 +228,15 @@ void SceneView::removeWayPoint() {
   schedule();
 }
 
-QImage SceneView::picture() {
-  flush();
-  QImage out = isValid() ? grabFramebuffer() : QImage();
-  if (out.isNull()) {
-    out = QImage(size() * devicePixelRatioF(), QImage::Format_RGB32);
-    out.setDevicePixelRatio(devicePixelRatioF());
-    out.fill(toQColor(m_scene.background()));
-  }
-  out = out.convertToFormat(QImage::Format_RGB32);
-  QPainter painter(&out);
-  m_overlay->render(&painter, {}, {}, QWidget::DrawChildren);
-  return out;
+/// Samples carry their scores; natural motion gets those under the chosen model.
+void SceneView::scoreNatural() {
+  const auto& groups = m_workspace.groups();
+  const bool natural = std::any_of(groups.begin(), groups.end(), [](const MotionGroup& g) {
+    return g.natural() && !g.motions.empty();
+  });
+  const std::string system = naturalSystem(m_workspace, m_settings);
+  if (natural && !system.empty() && !m_workspace.naturalScores(system))
+    m_workspace.scoreNatural(system);
 }
 
 }  // namespace marey::gui

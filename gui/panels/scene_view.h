@@ -1,7 +1,6 @@
 // The 3D view: all visible motions on one clock, with mouse and keys.
 #pragma once
 
-#include <QImage>
 #include <QTimer>
 #include <memory>
 
@@ -31,8 +30,15 @@ class SceneView : public QVTKOpenGLNativeWidget {
   void setOrthographic(bool orthographic);
   void setPathEditing(bool editing);
   void removeWayPoint();
-  /// What is shown, drawn now, with the legend. Without OpenGL only what lies over the picture.
-  QImage picture();
+  Workspace& workspace() { return m_workspace; }
+  /// The motions that are drawn and may be picked, in the scene's order.
+  const SceneContent& content() const { return m_content; }
+  /// What an empty view says.
+  QString hint() const { return m_overlay->hint(); }
+
+ Q_SIGNALS:
+  /// The settings are no longer those that were asked for: a placement could not be drawn.
+  void settingsReplaced();
 
  protected:
   bool event(QEvent* event) override;
@@ -57,6 +63,8 @@ class SceneView : public QVTKOpenGLNativeWidget {
   void updateOptions();
   void fitNew();
   void updateHint();
+  void scoreNatural();
+  void fallBack(const std::string& why);
   void updateHover();
   void pick(const QPointF& at, bool add);
 
@@ -66,7 +74,7 @@ class SceneView : public QVTKOpenGLNativeWidget {
   FloorPathTool m_tool;
   SceneSettings m_settings;
   SceneContent m_content;
-  RootSpeeds m_speeds;
+  MotionColouring* m_colouring = nullptr;
   SceneOverlay* m_overlay = nullptr;
   QTimer m_redraw, m_hover;
   bool m_motionsChanged = true, m_optionsChanged = true;

@@ -86,7 +86,7 @@ class StatisticsPanel : public PlotPanel {
     const Experiment& e = workspace().experiment();
     return {.sets = motionSets(workspace().groups()),
             .range = workspace().range(),
-            .feet = workspace().feet(),
+            .feet = e.feet,
             .footStepCmS = e.toleranceStepCmS,
             .seed = e.seed};
   }

@@ -206,7 +206,9 @@ class TimelinePanel : public QWidget {
     m_rowsTimer.setSingleShot(true);
     m_rowsTimer.setInterval(0);
     connect(&m_rowsTimer, &QTimer::timeout, this, [this] { updateRows(); });
-    const auto later = [this] { m_rowsTimer.start(); };
+    const auto later = [this] {
+      if (!m_rowsTimer.isActive()) m_rowsTimer.start();
+    };
     connect(&m_workspace, &Workspace::motionsChanged, this, later);
     connect(&m_workspace, &Workspace::visibilityChanged, this, later);
     connect(&m_workspace, &Workspace::selectionChanged, this, later);

@@ -98,6 +98,12 @@ void offerSeries(Nearest& nearest, const Pointer& p, const Series& s, const Curv
         if (distance <= p.reach) nearest.offer(0.5 * distance, curve, s.y[i]);
       }
       break;
+    case SeriesKind::VerticalRule: {
+      const double distance = std::abs(p.frame.pixelX(s.x[0]) - p.pixelX);
+      // A line that crosses it is meant where both are near.
+      if (distance <= 0.5 * p.reach) nearest.offer(p.reach, curve, p.frame.dataY(p.pixelY));
+      break;
+    }
     default:
       break;
   }

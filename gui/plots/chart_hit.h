@@ -23,10 +23,17 @@ struct ChartHit {
 };
 
 /// The chart whose plot holds the pixel, and the nearest curve within `reach` pixels: lines come
-/// before bands. None outside every plot.
+/// before upright rules and these before bands. None outside every plot.
 std::optional<ChartHit> hitAt(const render::ChartGrid& grid,
                               const std::vector<render::ChartFrame>& frames, double pixelX,
                               double pixelY, double reach = 10.0);
+
+/// A curve drawn over the picture, without drawing that anew.
+struct ChartHighlight {
+  int chart = 0;
+  std::vector<double> x, y;
+  render::Colour colour;
+};
 
 /// Points of a line or of one row of a cloud. Throws std::out_of_range for a curve that is not
 /// there.

@@ -14,13 +14,6 @@
 
 namespace marey::gui {
 
-/// A curve drawn over the picture, without drawing that anew.
-struct ChartHighlight {
-  int chart = 0;
-  std::vector<double> x, y;
-  render::Colour colour;
-};
-
 struct ChartSpan {
   double low = 0.0, high = 0.0;
   bool operator==(const ChartSpan&) const = default;
@@ -44,6 +37,7 @@ class ChartView : public QWidget {
   void setCursor(std::optional<double> x);
   void setRange(std::optional<ChartSpan> range);
   void setHighlights(std::vector<ChartHighlight> highlights);
+  const std::vector<ChartHighlight>& highlights() const { return m_highlights; }
   void resetZoom();
   bool zoomed() const { return m_zoom.has_value(); }
 

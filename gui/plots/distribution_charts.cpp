@@ -91,6 +91,11 @@ void addViolins(LinkedGrid& out, const DistributionResult& result, size_t joint,
   }
 }
 
+/// A speed is that from the frame before: its first value belongs to frame 1.
+double firstFrame(const DistributionResult& result) {
+  return result.query.quantity == stats::Quantity::Speed ? 1.0 : 0.0;
+}
+
 void addEnvelopes(LinkedGrid& out, const DistributionResult& result, size_t joint) {
   const stats::QuantityText& text = stats::textOf(result.query.quantity);
   render::Chart& chart = out.grid.charts.back();
@@ -98,9 +103,7 @@ void addEnvelopes(LinkedGrid& out, const DistributionResult& result, size_t join
   chart.y = {.label = text.name, .unit = text.unit};
   for (const DistributionSet& set : result.sets) {
     Band band = bandOf(set.values[joint].byMotion);
-    // A speed is that from the frame before: its first value belongs to frame 1.
-    const double shift = result.query.quantity == stats::Quantity::Speed ? 1.0 : 0.0;
-    for (double& t : band.step) t = (t + shift) / set.fps;
+    for (double& t : band.step) t = (t + firstFrame(result)) / set.fps;
     if (band.step.empty()) continue;
     if (set.values[joint].byMotion.size() > 1)
       out.add(set.look.band(band.step, band.low, band.high), set.look.ids);
@@ -125,6 +128,70 @@ LinkedGrid distributionGrid(const DistributionResult& result, DistributionView v
   const auto charts = static_cast<int>(out.grid.charts.size());
   out.grid.columns = charts > 4 ? 3 : std::max(1, std::min(charts, 2));
   out.grid.shareX = view == DistributionView::Envelope;
+  return out;
+}
+
+namespace {
+/// The values of one motion that count: those inside the range.
+std::vector<double> valuesInRange(const DistributionResult& result, const DistributionSet& set,
+                                  const std::vector<double>& run) {
+  if (!result.query.range) return run;
+  std::vector<double> out;
+  for (size_t i = 0; i < run.size(); ++i) {
+    const double time = (static_cast<double>(i) + firstFrame(result)) / set.fps;
+    if (time >= result.query.range->beginS && time <= result.query.range->endS)
+      out.push_back(run[i]);
+  }
+  return out;
+}
+
+/// The density of one motion; in violins it rises from the middle of the set's row.
+std::optional<ChartHighlight> densityOf(const DistributionResult& result,
+                                        const DistributionSet& set, const std::vector<double>& run,
+                                        int chart, const render::Chart& shown) {
+  const std::vector<double> values = valuesInRange(result, set, run);
+  if (values.empty() || !shown.x.range) return std::nullopt;
+  auto curve = report::kernelDensity(values, shown.x.range->first, shown.x.range->second, kPoints);
+  const auto& rows = shown.y.categories;
+  const auto row = std::find(rows.begin(), rows.end(), set.look.name);
+  const double peak = *std::max_element(curve.y.begin(), curve.y.end());
+  if (row != rows.end())
+    for (double& y : curve.y)
+      y = static_cast<double>(row - rows.begin()) + 0.5 - 0.42 * y / std::max(peak, 1e-300);
+  return set.look.highlight(chart, std::move(curve.x), std::move(curve.y));
+}
+
+ChartHighlight overTime(const DistributionResult& result, const DistributionSet& set,
+                        const std::vector<double>& run, int chart) {
+  std::vector<double> x = framesInSeconds(run.size(), set.fps);
+  for (double& t : x) t += firstFrame(result) / set.fps;
+  return set.look.highlight(chart, std::move(x), run);
+}
+}  // namespace
+
+std::vector<ChartHighlight> distributionHighlights(const DistributionResult& result,
+                                                   DistributionView view,
+                                                   const render::ChartGrid& shown,
+                                                   const std::set<MotionId>& picked) {
+  std::vector<ChartHighlight> out;
+  for (size_t k = 0; k < result.query.joints.size(); ++k) {
+    const std::string& joint = result.skeleton->names[static_cast<size_t>(result.query.joints[k])];
+    const auto chart = std::find_if(shown.charts.begin(), shown.charts.end(),
+                                    [&](const render::Chart& c) { return c.title == joint; });
+    if (chart == shown.charts.end()) continue;  // not defined at this joint
+    const auto index = static_cast<int>(chart - shown.charts.begin());
+    for (const DistributionSet& set : result.sets) {
+      if (!set.look.singles(picked)) continue;
+      const auto& runs = set.values[k].byMotion;
+      for (size_t i = 0; i < runs.size() && out.size() < kMostHighlights; ++i) {
+        if (!picked.contains(set.look.ids[i])) continue;
+        if (view == DistributionView::Envelope)
+          out.push_back(overTime(result, set, runs[i], index));
+        else if (auto curve = densityOf(result, set, runs[i], index, *chart))
+          out.push_back(std::move(*curve));
+      }
+    }
+  }
   return out;
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "motion/roles.h"
-#include "stats/bones.h"
 #include "stats/sample_distance.h"
 
 namespace marey::gui {
@@ -95,10 +94,7 @@ DistributionResult distributionResult(const std::vector<MotionSet>& sets,
   out.skeleton = sets.front().clips.front()->skeleton;
   out.meanPose = meanPoseOf(sets.front());
   for (const MotionSet& set : sets)
-    for (const ClipPtr& clip : set.clips)
-      if (clip->jointCount() != out.skeleton->jointCount())
-        stats::requireSameJoints(
-            {sliceFrames(*sets.front().clips.front(), 0, 1), sliceFrames(*clip, 0, 1)});
+    for (const ClipPtr& clip : set.clips) requireJointsOf(*clip, *sets.front().clips.front());
   std::vector<std::vector<double>> natural;
   for (size_t i = 0; i < sets.size(); ++i) {
     const MotionSet& set = sets[i];

@@ -46,6 +46,11 @@ DistributionResult distributionResult(const std::vector<MotionSet>& sets,
 enum class DistributionView { Density, Violin, Envelope };
 /// One chart per joint of the query that has values.
 LinkedGrid distributionGrid(const DistributionResult& result, DistributionView view);
+/// Single motions over that grid: their own density, or their values over time.
+std::vector<ChartHighlight> distributionHighlights(const DistributionResult& result,
+                                                   DistributionView view,
+                                                   const render::ChartGrid& shown,
+                                                   const std::set<MotionId>& picked);
 
 struct DistributionRow {
   std::string set, joint;

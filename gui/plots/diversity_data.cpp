@@ -12,22 +12,20 @@ namespace {
 constexpr int kCompared = 48;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<Matrix> rootFramePoses(const std::vector<ClipPtr>& clips, Progress& progress) {
-  std::vector<Matrix> poses;
-  const Clip& first = *clips.front();
-  for (const int i : stats::spreadIndices(static_cast<int>(clips.size()), kCompared)) {
-    progress.throwIfCancelled();
-    const Clip& clip = *clips[static_cast<size_t>(i)];
-    if (clip.jointCount() != first.jointCount() || clip.fps != first.fps)
-      throwInput(
-          {.path = clip.name},
-          fmt::format("{} joints at {} fps as the other motions", first.jointCount(), first.fps),
-          "{} at {} fps", clip.jointCount(), clip.fps);
-    FeatureSpec spec;
-    spec.fps = clip.fps;
-    poses.push_back(extractFeatures(clip, spec).pose);
-  }
-  return poses;
+/// One motion as pairs compare it. Throws InputError unless it has joints and rate of `first`.
+Matrix rootFramePose(const Clip& clip, const Clip& first) {
+  if (clip.fps != first.fps)
+    throwInput({.path = clip.name}, fmt::format("{} fps as the other motions", first.fps), "{}",
+               clip.fps);
+  requireJointsOf(clip, first);
+  FeatureSpec spec;
+  spec.fps = clip.fps;
+  return extractFeatures(clip, spec).pose;
+}
+
+double distanceCm(const Matrix& a, const Matrix& b, Eigen::Index t) {
+  const double joints = static_cast<double>(a.cols()) / 3.0;
+  return 100.0 * std::sqrt(static_cast<double>((a.row(t) - b.row(t)).squaredNorm()) / joints);
 }
 
 double meanPairCm(const std::vector<Matrix>& poses, Eigen::Index t) {
@@ -36,12 +34,60 @@ double meanPairCm(const std::vector<Matrix>& poses, Eigen::Index t) {
   for (size_t i = 0; i < poses.size(); ++i)
     for (size_t j = i + 1; j < poses.size(); ++j) {
       if (t >= poses[i].rows() || t >= poses[j].rows()) continue;
-      const double joints = static_cast<double>(poses[i].cols()) / 3.0;
-      const auto squared = static_cast<double>((poses[i].row(t) - poses[j].row(t)).squaredNorm());
-      sum += 100.0 * std::sqrt(squared / joints);
+      sum += distanceCm(poses[i], poses[j], t);
       ++pairs;
     }
   return pairs > 0 ? sum / pairs : kNaN;
+}
+
+/// Mean over the compared motions but `itself` (an index into them; -1: it is none of them).
+std::vector<float> distancesFrom(const Matrix& pose, const std::vector<Matrix>& compared,
+                                 int itself) {
+  std::vector<float> out;
+  for (Eigen::Index t = 0; t < pose.rows(); ++t) {
+    double sum = 0.0;
+    int others = 0;
+    for (size_t j = 0; j < compared.size(); ++j) {
+      if (static_cast<int>(j) == itself || t >= compared[j].rows()) continue;
+      sum += distanceCm(pose, compared[j], t);
+      ++others;
+    }
+    out.push_back(static_cast<float>(others > 0 ? sum / others : kNaN));
+  }
+  return out;
+}
+
+DiversityCurve curveOf(const MotionSet& set, Progress& progress) {
+  const Clip& first = *set.clips.front();
+  const std::vector<int> chosen =
+      stats::spreadIndices(static_cast<int>(set.clips.size()), kCompared);
+  std::vector<Matrix> poses;
+  for (const int i : chosen) {
+    progress.throwIfCancelled();
+    poses.push_back(rootFramePose(*set.clips[static_cast<size_t>(i)], first));
+  }
+  DiversityCurve curve{
+      .look = lookOf(set), .fps = first.fps, .compared = static_cast<int>(poses.size())};
+  Eigen::Index frames = 0;
+  for (const Matrix& pose : poses) frames = std::max(frames, pose.rows());
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    progress.throwIfCancelled();
+    curve.distanceCm.push_back(meanPairCm(poses, t));
+  }
+  // Beyond the second-longest motion there is no pair.
+  while (!curve.distanceCm.empty() && std::isnan(curve.distanceCm.back()))
+    curve.distanceCm.pop_back();
+  for (size_t i = 0; i < set.clips.size(); ++i) {
+    progress.throwIfCancelled();
+    progress.report(static_cast<double>(i) / static_cast<double>(set.clips.size()));
+    const auto at = std::lower_bound(chosen.begin(), chosen.end(), static_cast<int>(i));
+    const bool known = at != chosen.end() && *at == static_cast<int>(i);
+    const auto k = static_cast<size_t>(at - chosen.begin());
+    curve.motionsCm.push_back(known
+                                  ? distancesFrom(poses[k], poses, static_cast<int>(k))
+                                  : distancesFrom(rootFramePose(*set.clips[i], first), poses, -1));
+  }
+  return curve;
 }
 }  // namespace
 
@@ -50,21 +96,9 @@ std::vector<DiversityCurve> diversityCurves(const std::vector<MotionSet>& sets,
   std::vector<DiversityCurve> out;
   for (size_t s = 0; s < sets.size(); ++s) {
     if (sets[s].clips.size() < 2) continue;
-    const std::vector<Matrix> poses = rootFramePoses(sets[s].clips, progress);
-    DiversityCurve curve{.look = lookOf(sets[s]),
-                         .fps = sets[s].clips.front()->fps,
-                         .compared = static_cast<int>(poses.size())};
-    Eigen::Index frames = 0;
-    for (const Matrix& pose : poses) frames = std::max(frames, pose.rows());
-    for (Eigen::Index t = 0; t < frames; ++t) {
-      progress.throwIfCancelled();
-      curve.distanceCm.push_back(meanPairCm(poses, t));
-    }
-    // Beyond the second-longest motion there is no pair.
-    while (!curve.distanceCm.empty() && std::isnan(curve.distanceCm.back()))
-      curve.distanceCm.pop_back();
-    out.push_back(std::move(curve));
-    progress.report(static_cast<double>(s + 1) / static_cast<double>(sets.size()));
+    Progress part = progress.part(static_cast<double>(s) / static_cast<double>(sets.size()),
+                                  static_cast<double>(s + 1) / static_cast<double>(sets.size()));
+    out.push_back(curveOf(sets[s], part));
   }
   return out;
 }
@@ -87,11 +121,23 @@ LinkedGrid diversityGrid(const std::vector<DiversityCurve>& curves) {
   render::Chart& chart = out.grid.charts.front();
   chart.x = {.label = "time", .unit = "s"};
   chart.y = {.label = "mean distance of pairs", .unit = "cm"};
+  for (const DiversityCurve& curve : curves)
+    out.add(curve.look.line(framesInSeconds(curve.distanceCm.size(), curve.fps), curve.distanceCm),
+            curve.look.ids);
+  return out;
+}
+
+std::vector<ChartHighlight> diversityHighlights(const std::vector<DiversityCurve>& curves,
+                                                const std::set<MotionId>& picked) {
+  std::vector<ChartHighlight> out;
   for (const DiversityCurve& curve : curves) {
-    std::vector<double> x;
-    for (size_t t = 0; t < curve.distanceCm.size(); ++t)
-      x.push_back(static_cast<double>(t) / curve.fps);
-    out.add(curve.look.line(std::move(x), curve.distanceCm), curve.look.ids);
+    if (!curve.look.singles(picked)) continue;
+    for (size_t i = 0; i < curve.look.ids.size() && out.size() < kMostHighlights; ++i) {
+      if (!picked.contains(curve.look.ids[i])) continue;
+      const std::vector<float>& run = curve.motionsCm[i];
+      out.push_back(curve.look.highlight(0, framesInSeconds(run.size(), curve.fps),
+                                         {run.begin(), run.end()}));
+    }
   }
   return out;
 }

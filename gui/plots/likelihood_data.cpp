@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "model/motion_model.h"
 #include "stats/sample_distance.h"
 
@@ -169,6 +171,32 @@ LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
              .y = {floor.nats},
              .width = 1.4,
              .dashed = true});
+  }
+  return out;
+}
+
+void markWorst(LinkedGrid& grid, const WorstFrame& worst) {
+  grid.add({.kind = SeriesKind::VerticalRule,
+            .name = fmt::format("worst frame, {:.0f} nats", worst.nats),
+            .colour = render::grey(0.45),
+            .x = {worst.timeS},
+            .width = 1.2,
+            .dashed = true},
+           {worst.id});
+}
+
+std::vector<ChartHighlight> likelihoodHighlights(const std::vector<LikelihoodGroup>& groups,
+                                                 const std::set<MotionId>& picked) {
+  std::vector<ChartHighlight> out;
+  for (const LikelihoodGroup& group : groups) {
+    if (!group.look.singles(picked)) continue;
+    for (const LikelihoodRun& run : group.runs) {
+      if (!picked.contains(run.id) || out.size() >= kMostHighlights) continue;
+      std::vector<double> x;
+      for (size_t i = 0; i < run.nats.size(); ++i)
+        x.push_back((run.firstFrame + static_cast<double>(i)) / group.fps);
+      out.push_back(group.look.highlight(0, std::move(x), run.nats));
+    }
   }
   return out;
 }

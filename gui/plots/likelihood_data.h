@@ -53,5 +53,10 @@ std::optional<double> linearGaussianFloor(const ModelInfo& info);
 /// Median and 5 to 95 % band per group, or every motion as a line of a cloud.
 LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
                           const std::vector<LikelihoodFloor>& floors, bool everyMotion);
+/// A line at that frame, which stands for its motion.
+void markWorst(LinkedGrid& grid, const WorstFrame& worst);
+/// Single motions over the grid.
+std::vector<ChartHighlight> likelihoodHighlights(const std::vector<LikelihoodGroup>& groups,
+                                                 const std::set<MotionId>& picked);
 
 }  // namespace marey::gui

@@ -1,7 +1,9 @@
 // A chart whose curves know the motions that they were made of.
 #pragma once
 
+#include <algorithm>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "plots/chart_hit.h"
@@ -26,6 +28,9 @@ struct LinkedGrid {
   }
 };
 
+/// More curves over each other than this show nothing.
+inline constexpr size_t kMostHighlights = 24;
+
 /// How a set is drawn everywhere.
 struct SetLook {
   std::string name;
@@ -33,6 +38,15 @@ struct SetLook {
   bool dashed = false, natural = false;
   std::vector<MotionId> ids;
 
+  /// Whether one motion is to be shown by a curve of its own: it is picked, but not all of the set,
+  /// whose own curve lights up then.
+  bool singles(const std::set<MotionId>& picked) const {
+    return !std::all_of(ids.begin(), ids.end(),
+                        [&](const MotionId& id) { return picked.contains(id); });
+  }
+  ChartHighlight highlight(int chart, std::vector<double> x, std::vector<double> y) const {
+    return {.chart = chart, .x = std::move(x), .y = std::move(y), .colour = colour};
+  }
   render::Series line(std::vector<double> x, std::vector<double> y) const {
     return {.kind = render::SeriesKind::Line,
             .name = name,

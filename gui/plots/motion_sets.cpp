@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/bones.h"
 #include "stats/sample_distance.h"
 
 namespace marey::gui {
@@ -26,7 +27,9 @@ std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups) {
   for (const MotionGroup& group : groups) {
     const bool shown = std::any_of(group.motions.begin(), group.motions.end(),
                                    [](const Motion& m) { return m.visible; });
-    if (!shown) continue;
+    // A motion that is still being steered grows at every frame: it is compared once it is kept.
+    const bool steered = !group.complete && !group.recipe && !group.natural();
+    if (!shown || steered) continue;
     MotionSet set{.group = group.id,
                   .name = group.name,
                   .system = group.system,
@@ -53,9 +56,11 @@ const MotionSet* naturalSet(const std::vector<MotionSet>& sets) {
 
 ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range) {
   ClipsInRange out;
-  for (const ClipPtr& clip : set.clips) {
+  for (size_t i = 0; i < set.clips.size(); ++i) {
+    const ClipPtr& clip = set.clips[i];
     const FrameSpan span = spanOf(*clip, range);
     if (span.first >= span.last) continue;
+    out.ids.push_back(set.ids[i]);
     out.clips.push_back(range ? sliceFrames(*clip, span.first, span.last) : *clip);
     if (set.wanted.empty()) continue;
     const auto frames = static_cast<int>(set.wanted.size());
@@ -66,6 +71,18 @@ ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range
   // A wanted path that ends before the range says nothing of it.
   if (std::any_of(out.wanted.begin(), out.wanted.end(), [](const auto& w) { return w.empty(); }))
     out.wanted.clear();
+  return out;
+}
+
+void requireJointsOf(const Clip& clip, const Clip& first) {
+  const Skeleton &a = *clip.skeleton, &b = *first.skeleton;
+  if (&a == &b || (a.names == b.names && a.parents == b.parents)) return;
+  stats::requireSameJoints({sliceFrames(first, 0, 1), sliceFrames(clip, 0, 1)});
+}
+
+std::vector<double> framesInSeconds(size_t frames, double fps) {
+  std::vector<double> out;
+  for (size_t t = 0; t < frames; ++t) out.push_back(static_cast<double>(t) / fps);
   return out;
 }
 

@@ -22,17 +22,25 @@ struct MotionSet {
 };
 
 /// Sets of the groups that have something visible: the visible samples of a system, but all of the
-/// natural clips, of which the views show a few only. Natural motion comes first.
+/// natural clips, of which the views show a few only. Natural motion comes first. Motions that are
+/// being steered are left out.
 std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups);
 const MotionSet* naturalSet(const std::vector<MotionSet>& sets);
 
 /// The parts of a set's motions inside a range of time (all without one), by the rule of
 /// Workspace::clipInRange; motions with nothing inside are left out.
 struct ClipsInRange {
+  std::vector<MotionId> ids;  ///< of every clip
   std::vector<Clip> clips;
   std::vector<std::vector<RootFrame>> wanted;  ///< of every clip; empty for natural motion
 };
 ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range);
+
+/// Throws InputError unless `clip` has the joints of `first`, by name and parent.
+void requireJointsOf(const Clip& clip, const Clip& first);
+
+/// 0, 1 / fps, 2 / fps, ...
+std::vector<double> framesInSeconds(size_t frames, double fps);
 
 /// Median and 5 to 95 % over runs at every step; NaN are left out, and steps without a value.
 struct Band {

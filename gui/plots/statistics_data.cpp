@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
+#include "stats/footsteps.h"
+
 namespace marey::gui {
 namespace {
 
@@ -30,6 +33,15 @@ std::string quoted(const std::string& text, char separator) {
 
 std::string number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.6g}", *value) : "";
+}
+
+/// Of the skeleton that the clips have; without feet there are no statistics of feet.
+std::vector<int> feetOf(const std::vector<Clip>& clips, const std::string& names) {
+  try {
+    return stats::feetOf(*clips.front().skeleton, names);
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 /// In the order of the registry: a set may have statistics that the first one lacks.
@@ -76,12 +88,12 @@ StatisticsTable statisticsTable(const StatisticsInput& input, Progress& progress
     sets.push_back(std::move(clips));
   }
   const bool naturalAlone = sets.empty() && !natural.empty();
-  if (naturalAlone) sets.push_back({.clips = natural, .wanted = {}});
+  if (naturalAlone) sets.push_back({.ids = {}, .clips = natural, .wanted = {}});
   for (size_t i = 0; i < sets.size(); ++i) {
     const stats::StatisticInput one{.clips = &sets[i].clips,
                                     .natural = natural.empty() || naturalAlone ? nullptr : &natural,
                                     .wanted = sets[i].wanted.empty() ? nullptr : &sets[i].wanted,
-                                    .feet = input.feet,
+                                    .feet = feetOf(sets[i].clips, input.feet),
                                     .footStepCmS = input.footStepCmS};
     Progress part = progress.part(static_cast<double>(i) / static_cast<double>(sets.size()),
                                   static_cast<double>(i + 1) / static_cast<double>(sets.size()));

@@ -16,7 +16,7 @@ namespace marey::gui {
 struct StatisticsInput {
   std::vector<MotionSet> sets;  ///< natural first, where there is any
   std::optional<TimeRange> range;
-  std::vector<int> feet;
+  std::string feet;  ///< joint names as in the document; empty: found by name
   double footStepCmS = 1.0;
   uint64_t seed = 1;
 

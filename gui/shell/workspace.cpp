@@ -118,6 +118,7 @@ void Workspace::open(Experiment experiment, const QString& file) {
   m_selection = {};
   m_time = 0.0;
   m_range.reset();
+  Q_EMIT documentOpened();
   Q_EMIT documentChanged();
   tellMotions();
   Q_EMIT selectionChanged();

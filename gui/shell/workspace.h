@@ -114,6 +114,7 @@ class Workspace : public QObject {
 
  Q_SIGNALS:
   void documentChanged();
+  void documentOpened();  ///< another one, before documentChanged
   void currentPathChanged();
   void motionsChanged();     ///< groups or their motions, or how the document measures them
   void visibilityChanged();  ///< after motionsChanged too

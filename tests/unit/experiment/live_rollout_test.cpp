@@ -1,9 +1,8 @@
 // A motion steered frame by frame.
-#include "experiment/live_rollout.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "experiment/sample_set.h"
 #include "model/sampler.h"
 
 namespace marey {
@@ -38,7 +37,9 @@ class MemoryModel : public MotionModel {
       pose.col(i % pose.cols()) += static_cast<float>(i + 1) * window.col(i);
     return pose;
   }
-  SequenceScore observe(RolloutState&, const Matrix&, const Matrix&) const override { return {}; }
+  SequenceScore observe(RolloutState&, const Matrix& poses, const Matrix&) const override {
+    return {.latent = poses, .loglikNats = std::vector<double>(static_cast<size_t>(poses.rows()))};
+  }
   double baseDegreesOfFreedom() const override { return 0.0; }
   TensorFile save() const override { return {}; }
 
@@ -130,6 +131,39 @@ TEST(LiveRollout, LeavesAPathThatPassesWhereItWalked) {
     EXPECT_NEAR(path[t].z, roots[t].z, 1e-6);
     EXPECT_NEAR(path[t].heading, roots[t].heading, 1e-6);
   }
+}
+
+TEST(LiveRollout, FacingAsideLeavesTheWayAsItIs) {
+  LiveRollout ahead(std::make_shared<MemoryModel>(), {.smoothingS = 0.0});
+  LiveRollout aside(std::make_shared<MemoryModel>(), {.smoothingS = 0.0});
+  constexpr double kLeft = 1.0;
+  for (int t = 0; t < 40; ++t) {
+    ahead.advance(kStraight);
+    aside.advance({.forwardMS = 1.25, .facingRad = t < 1 ? 0.0 : kLeft});
+  }
+  EXPECT_NEAR(aside.root().heading, kLeft, 1e-5);
+  EXPECT_NEAR(aside.root().x, ahead.root().x, 1e-4);
+  EXPECT_NEAR(aside.root().z, ahead.root().z, 1e-4);
+}
+
+TEST(LiveRollout, ItsSteeringGivesTheSameMotionAgain) {
+  const auto model = std::make_shared<MemoryModel>();
+  LiveRollout live(model, {.seed = 5, .temperature = 0.8});
+  for (int t = 0; t < 25; ++t)
+    live.advance({.forwardMS = t < 9 ? 0.0 : 1.1, .turnRadS = t > 15 ? 0.5 : 0.0});
+  SampleRecipe recipe;
+  recipe.system.temperature = 0.8;
+  recipe.seed = 5;
+  recipe.fps = kFps;
+  recipe.steering = std::make_shared<const Steering>(live.steering());
+  Progress progress;
+  const SampleSet again = drawSampleSet(*model, recipe, progress);
+  ASSERT_EQ(again.motions.size(), 1U);
+  EXPECT_EQ(again.motions.front().clip->positions, sampledClip(*model, live.sequence()).positions);
+  EXPECT_EQ(toJson(recipe)["steering"]["commands"].size(), 3U) << "runs of equal commands";
+  recipe.samples = 2;
+  const SampleSet two = drawSampleSet(*model, recipe, progress);
+  EXPECT_NE(two.motions[1].clip->positions, two.motions[0].clip->positions);
 }
 
 }  // namespace

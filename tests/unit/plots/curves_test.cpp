@@ -9,6 +9,7 @@
 #include "plots/statistics_data.h"
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "motion/walker.h"
 #include "stats/diversity.h"
 #include "stats/sample_distance.h"
@@ -109,17 +110,114 @@ TEST(Footsteps, AllFeetAreTheCurveOfTheStatistics) {
   const auto sets = motionSets(twoGroups());
   const stats::FootstepOptions options{.feet = stats::feetOf(*sets[0].clips[0]->skeleton)};
   Progress progress;
-  const auto results = footstepResults(sets, std::nullopt, options, progress);
+  const auto results = footstepResults(sets, std::nullopt, {}, progress);
   const auto expected = stats::footstepCurve(clipsIn(sets[0], std::nullopt).clips, options);
   EXPECT_EQ(results[0].all.count, expected.count);
   EXPECT_DOUBLE_EQ(results[0].all.v95CmS, expected.v95CmS);
   EXPECT_DOUBLE_EQ(results[0].all.durationStdS, expected.durationStdS);
   EXPECT_TRUE(perMinute(results));
   EXPECT_EQ(footstepGrid(results).grid.charts[0].y.label, "footsteps per minute");
-  const auto rows = footstepRows(results, {"left", "right"});
+  const auto rows = footstepRows(results);
   ASSERT_EQ(rows.size(), 6U);
   EXPECT_NEAR(rows[0].stepsPerMinute, rows[0].steps / (3 * 4.0 / 60.0),
               0.05 * rows[0].stepsPerMinute);
+}
+
+TEST(Footsteps, APickedMotionHasItsOwnCurveOnTheScaleOfItsSet) {
+  const auto sets = motionSets(twoGroups());
+  Progress progress;
+  const auto results = footstepResults(sets, std::nullopt, {}, progress);
+  const auto curves = footstepHighlights(results, {{2, 1}});
+  ASSERT_EQ(curves.size(), 2U) << "counts, and durations";
+  const auto alone = stats::footstepCurve({*sets[1].clips[1]},
+                                          {.feet = stats::feetOf(*sets[1].clips[1]->skeleton)});
+  for (size_t k = 0; k < alone.count.size(); ++k)
+    EXPECT_NEAR(curves[0].y[k],
+                static_cast<double>(alone.count[k]) / (sets[1].clips[1]->seconds() / 60.0), 1e-6);
+  EXPECT_EQ(curves[1].chart, 1);
+  EXPECT_TRUE(footstepHighlights(results, {{2, 0}, {2, 1}}).empty())
+      << "a whole set is its own curve";
+}
+
+/// The same motion in a skeleton whose joints come in another order.
+ClipPtr reordered(const Clip& clip) {
+  Skeleton body = *clip.skeleton;
+  Clip out = clip;
+  // Leaves may swap places without breaking the order of parents: the two feet's ends.
+  const auto feet = stats::feetOf(body);
+  const auto a = static_cast<size_t>(feet.front()), b = static_cast<size_t>(feet.back());
+  std::swap(body.names[a], body.names[b]);
+  out.skeleton = std::make_shared<const Skeleton>(body);
+  for (int t = 0; t < out.frameCount(); ++t)
+    std::swap(out.positions[static_cast<size_t>(t * out.jointCount()) + a],
+              out.positions[static_cast<size_t>(t * out.jointCount()) + b]);
+  return std::make_shared<const Clip>(std::move(out));
+}
+
+TEST(Footsteps, FeetAreThoseOfEverySetsOwnSkeleton) {
+  const ClipPtr plain = walkerClip(1);
+  const ClipPtr other = reordered(*plain);
+  const auto sets = motionSets({groupOf(1, "Natural", -1, {plain}), groupOf(2, "MG", 0, {other})});
+  const std::string foot =
+      plain->skeleton->names[static_cast<size_t>(stats::feetOf(*plain->skeleton).front())];
+  Progress progress;
+  const auto results = footstepResults(sets, std::nullopt, {.feet = foot}, progress);
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_EQ(results[0].all.count, results[1].all.count);
+  EXPECT_EQ(results[1].footNames, (std::vector<std::string>{foot}));
+}
+
+TEST(Distributions, SkeletonsOfEqualSizeButOtherNamesAreNotCompared) {
+  const ClipPtr plain = walkerClip(1);
+  const auto sets =
+      motionSets({groupOf(1, "Natural", -1, {plain}), groupOf(2, "MG", 0, {reordered(*plain)})});
+  Progress progress;
+  EXPECT_THROW(distributionResult(sets, {.joints = {0}, .range = {}}, progress), InputError);
+  const auto mixed = motionSets({groupOf(1, "MG", 0, {plain, reordered(*plain)})});
+  EXPECT_THROW(diversityCurves(mixed, progress), InputError);
+}
+
+TEST(Diversity, APickedMotionShowsItsDistanceFromTheOthers) {
+  const auto sets = motionSets(twoGroups());
+  Progress progress;
+  const auto curves = diversityCurves(sets, progress);
+  const auto picked = diversityHighlights(curves, {{2, 0}});
+  ASSERT_EQ(picked.size(), 1U);
+  // Of a set of two, every distance is that of the one pair.
+  ASSERT_LE(curves[1].distanceCm.size(), picked[0].y.size());
+  for (size_t t = 0; t < curves[1].distanceCm.size(); ++t)
+    EXPECT_NEAR(picked[0].y[t], curves[1].distanceCm[t], 1e-3);
+}
+
+TEST(Distributions, APickedMotionHasItsDensityAndItsValuesOverTime) {
+  const auto sets = motionSets(twoGroups());
+  Progress progress;
+  const auto result = distributionResult(
+      sets, {.quantity = stats::Quantity::Height, .joints = {3}, .range = {}}, progress);
+  const auto in = [&](DistributionView view) {
+    return distributionHighlights(result, view, distributionGrid(result, view).grid, {{1, 1}});
+  };
+  const auto time = in(DistributionView::Envelope);
+  ASSERT_EQ(time.size(), 1U);
+  EXPECT_EQ(time[0].y, result.sets[0].values[0].byMotion[1]);
+  const auto density = in(DistributionView::Density);
+  ASSERT_EQ(density.size(), 1U);
+  EXPECT_GT(*std::max_element(density[0].y.begin(), density[0].y.end()), 0.0);
+  const auto violin = in(DistributionView::Violin);
+  ASSERT_EQ(violin.size(), 1U);
+  for (const double y : violin[0].y) EXPECT_TRUE(y > 0.0 && y <= 0.5) << "in the first row";
+}
+
+TEST(Likelihoods, TheWorstFrameIsALineThatStandsForItsMotion) {
+  const auto groups = likelihoodGroups(
+      scoredGroups(), {"MG"}, [](const std::string&) { return nullptr; }, 20.0);
+  LinkedGrid grid = likelihoodGrid(groups, {}, false);
+  markWorst(grid, *worstFrame(groups, std::nullopt));
+  const int last = static_cast<int>(grid.grid.charts[0].series.size()) - 1;
+  EXPECT_EQ(grid.motions.at({0, last, -1}), (std::vector<MotionId>{{2, 0}}));
+  const auto picked = likelihoodHighlights(groups, {{2, 1}});
+  ASSERT_EQ(picked.size(), 1U);
+  EXPECT_EQ(picked[0].y, (std::vector<double>{5, 4, 3, 2}));
 }
 
 TEST(Diversity, MeanOverTimeIsThatOfPairDistances) {
@@ -157,9 +255,7 @@ TEST(Distributions, DistanceOfASetToItselfIsZeroAndElsewhereThatOfTheStatistics)
 
 TEST(Statistics, TableHasSystemsBesideNaturalMotionAndKnowsItsInput) {
   const auto groups = twoGroups();
-  StatisticsInput input{.sets = motionSets(groups),
-                        .range = {},
-                        .feet = stats::feetOf(*groups[0].motions[0].clip->skeleton)};
+  StatisticsInput input{.sets = motionSets(groups), .range = {}};
   Progress progress;
   const StatisticsTable table = statisticsTable(input, progress);
   EXPECT_EQ(table.systems, (std::vector<std::string>{"MG"}));

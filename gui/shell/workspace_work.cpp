@@ -1,4 +1,5 @@
 // Work in the background: reading, sampling, scoring.
+#include <QCoreApplication>
 #include <QPointer>
 #include <algorithm>
 #include <cmath>
@@ -36,6 +37,8 @@ void Workspace::cancelWork() {
 
 void Workspace::jobEnded(int job, bool successful) {
   std::erase_if(m_scoring, [job](const auto& entry) { return entry.second == job; });
+  // The last motions may still be on their way here.
+  if (!m_drawings.empty()) QCoreApplication::sendPostedEvents(this, QEvent::MetaCall);
   const auto found = std::find_if(m_drawings.begin(), m_drawings.end(),
                                   [job](const auto& entry) { return entry.second.job == job; });
   if (found == m_drawings.end()) return;

@@ -5,6 +5,7 @@
 
 #include "families.h"
 #include "shell/main_window.h"
+#include "shell/opened_files.h"
 
 #include "base/error.h"
 #include "experiment/edits.h"
@@ -105,15 +106,25 @@ void MainWindow::addModels() {
 }
 
 void MainWindow::openFiles(const QStringList& files) {
-  std::vector<std::string> motions, models;
-  for (const QString& file : files) {
-    const std::string path = file.toStdString();
-    if (file.endsWith(QStringLiteral(".json"))) return open(file);
-    if (file.endsWith(QStringLiteral(".marey")))
-      models.push_back(path);
-    else
-      motions.push_back(path);
+  std::vector<std::string> given;
+  for (const QString& file : files) given.push_back(file.toStdString());
+  const auto [documents, paths, models, motions] = sortOpened(given);
+  if (documents.size() > 1)
+    showError(tr("Opening files"), tr("Only one document can be open at a time; %1 is opened.")
+                                       .arg(QString::fromStdString(documents.front())));
+  if (!documents.empty()) {
+    const QString document = QString::fromStdString(documents.front());
+    open(document);
+    // Not opened: what came with it has no place in another document.
+    if (m_workspace.file() != document) return;
   }
+  for (const std::string& file : paths)
+    m_workspace.edit(tr("Add path"), [&](Experiment& e) {
+      addPath(e, {.name = std::filesystem::path(file).stem().string(),
+                  .path = {},
+                  .wayPoints = readPathFile(file),
+                  .seconds = 0.0});
+    });
   if (!models.empty())
     m_workspace.edit(tr("Add models"), [&](Experiment& e) {
       for (const std::string& file : models) {

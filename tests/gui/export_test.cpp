@@ -51,9 +51,10 @@ class Export : public WindowTest {
     openWindow();
     openSmallDemo();
     m_workspace->sampleCurrentPath();
-    ASSERT_TRUE(idle());
+    // The last motions are handed over after the job's end.
+    ASSERT_TRUE(waitUntil(
+        [this] { return m_jobs->idle() && m_workspace->groups().back().motions.size() == 2U; }));
     const MotionGroup& samples = m_workspace->groups().back();
-    ASSERT_EQ(samples.motions.size(), 2U);
     m_workspace->select({.motions = {{samples.id, 0}, {samples.id, 1}}});
     settle();
     m_out = fs::path(m_folder.path().toStdString()) / "out";

@@ -84,7 +84,7 @@ void ImportExaminer::start(const std::vector<std::string>& given) {
 
 void ImportExaminer::examine(size_t file, const std::string& path, const io::ReadOptions& options) {
   const std::vector<Task> task = {{file, nextVersion(file), path, options}};
-  run(Lane::Models, tr("Examining %1").arg(QFileInfo(QString::fromStdString(path)).fileName()),
+  run(Lane::Previews, tr("Examining %1").arg(QFileInfo(QString::fromStdString(path)).fileName()),
       [task, shared = m_shared](Progress& progress) { examineTasks(task, *shared, progress); });
 }
 

@@ -41,7 +41,7 @@ void ImportPreview::show(const std::string& path, size_t number, const io::ReadO
   const QPointer<ImportPreview> self(this);
   m_jobs.cancel(m_job);
   m_job = m_jobs.start(
-      Lane::Models, tr("Reading a preview"),
+      Lane::Previews, tr("Reading a preview"),
       [clip, number, path, options](Progress&) {
         try {
           std::vector<Clip> clips = io::readClips(path, options);

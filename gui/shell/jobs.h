@@ -14,8 +14,9 @@
 namespace marey::gui {
 
 /// Jobs of one lane run one after the other, lanes side by side: models keep all cores busy, files
-/// can be read meanwhile.
-enum class Lane { Files, Models };
+/// can be read meanwhile, and what somebody waits for to look at does not wait for a thousand
+/// others.
+enum class Lane { Files, Models, Previews };
 
 struct JobStatus {
   int id = 0;

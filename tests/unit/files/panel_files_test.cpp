@@ -5,6 +5,7 @@
 #include "shell/opened_files.h"
 #include <gtest/gtest.h>
 
+#include "base/archive.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/clip_io.h"
@@ -75,8 +76,13 @@ TEST_F(PanelFiles, ExportedClipsCarryTheirRecipeAndTheResidualOfTheirFit) {
         format == ExportFormat::Bvh || format == ExportFormat::Gltf || format == ExportFormat::Glb;
     EXPECT_EQ(result.fit.has_value(), fitted);
     std::string all;
-    for (const fs::path& file : result.files) all += readFile(file);
-    std::erase(all, '\0');  // NPZ has four bytes per character
+    for (const fs::path& file : result.files) {
+      if (file.extension() == ".npz")
+        for (const auto& [name, content] : readArchive(file)) all += content;
+      else
+        all += readFile(file);
+    }
+    std::erase(all, '\0');  // NumPy has four bytes per character
     for (const char* key : {"experiment_hash", "model_hash", "seed", "temperature", "marey"})
       EXPECT_NE(all.find(key), std::string::npos) << key;
   }

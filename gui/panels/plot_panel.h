@@ -83,8 +83,9 @@ class PlotPanel : public QWidget {
   std::map<CurveRef, std::vector<MotionId>> m_curves;
   QTimer m_timer;
   bool m_overTime = false;
-  bool m_stale = true;  ///< changed while hidden
-  int m_version = 0;    ///< of compute
+  bool m_stale = true;                       ///< changed while hidden
+  int m_version = 0;                         ///< of compute
+  std::optional<render::Recipe> m_computed;  ///< while a result is taken: the recipe of its input
   int m_job = 0;
 };
 

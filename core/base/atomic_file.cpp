@@ -39,6 +39,15 @@ void renameOver(const fs::path& from, const fs::path& to) {
   if (ec) throw FileError(fmt::format("{}: cannot write: {}", to.string(), ec.message()));
 }
 
+/// Throws FileError where a folder lies in the place of a file, or a file in that of a folder.
+void requireFree(const fs::path& place, bool folder) {
+  std::error_code ec;
+  const fs::file_status there = fs::status(place, ec);
+  if (!fs::exists(there) || fs::is_directory(there) == folder) return;
+  throw FileError(fmt::format("{}: cannot write: expected a {}, found a {}", place.string(),
+                              folder ? "folder" : "file", folder ? "file" : "folder"));
+}
+
 }  // namespace
 
 void writeFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
@@ -102,8 +111,11 @@ StagedFolder::StagedFolder(fs::path target) : m_target(std::move(target)) {
   std::error_code ec;
   if (fs::exists(m_target, ec) && !fs::is_directory(m_target, ec))
     throw FileError(fmt::format("{}: expected a folder, found a file", m_target.string()));
-  createFolder(m_target.parent_path());
-  m_staging = besideName(m_target);
+  // Inside a target that is there: its parent may be closed to the user (a home folder) or lie on
+  // another file system (a mount point).
+  const bool there = fs::exists(m_target, ec);
+  if (!there) createFolder(m_target.parent_path());
+  m_staging = besideName(there ? m_target / "" : m_target);
   createFolder(m_staging);
 }
 
@@ -124,8 +136,13 @@ void StagedFolder::commit() {
   for (fs::recursive_directory_iterator it(m_staging, ec), end; !ec && it != end; it.increment(ec))
     entries.push_back(*it);
   if (ec) throw FileError(fmt::format("{}: cannot list: {}", m_staging.string(), ec.message()));
+  const auto placeOf = [this](const fs::directory_entry& entry) {
+    return m_target / entry.path().lexically_relative(m_staging);
+  };
+  // Asked before the first file is moved: what is in the way of one keeps all of them out.
+  for (const auto& entry : entries) requireFree(placeOf(entry), entry.is_directory(ec));
   for (const auto& entry : entries) {
-    const fs::path to = m_target / entry.path().lexically_relative(m_staging);
+    const fs::path to = placeOf(entry);
     if (entry.is_directory(ec))
       createFolder(to);
     else

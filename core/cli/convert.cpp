@@ -156,6 +156,7 @@ void addConvertCommand(CLI::App& app, Context& context) {
   command->add_option("--source-up", options->read.up, "up axis of the input (default: guessed)");
   command->add_option("--source-fps", options->read.fps, "frame rate of the input")
       ->check(CLI::PositiveNumber);
+  addEulerOption(*command, "--source-euler,--euler", options->read);
   command->add_option("--asf", options->read.asf, "skeleton of AMC files");
 }
 

@@ -11,6 +11,15 @@ void addReadOptions(CLI::App& command, io::ReadOptions& options) {
   command
       .add_option("--source-fps", options.fps, "Frame rate of the files, in place of what they say")
       ->check(CLI::PositiveNumber);
+  addEulerOption(command, "--euler", options);
+}
+
+void addEulerOption(CLI::App& command, const std::string& name, io::ReadOptions& options) {
+  command
+      .add_option(name, options.eulerOrder,
+                  "Order of the turns in BVH and AMC files, in place of the one they list: ZXY, "
+                  "...; values keep their axes")
+      ->check(CLI::IsMember({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}, CLI::ignore_case));
 }
 
 std::vector<Clip> readAll(const std::vector<std::filesystem::path>& files,

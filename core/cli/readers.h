@@ -13,8 +13,10 @@ namespace marey::cli {
 
 using io::expandInputs;
 
-/// --unit, --up and --source-fps, which override what readers find or guess.
+/// --unit, --up, --source-fps and --euler, which override what readers find or guess.
 void addReadOptions(CLI::App& command, io::ReadOptions& options);
+/// The last of them alone, under another name.
+void addEulerOption(CLI::App& command, const std::string& name, io::ReadOptions& options);
 
 /// Every clip of the files, in order. Throws InputError, CancelledError.
 std::vector<Clip> readAll(const std::vector<std::filesystem::path>& files,

@@ -21,9 +21,6 @@ struct RenderOptions {
   io::ReadOptions read;
 };
 
-/// Videos and pictures name their systems only while the legend stays one line.
-constexpr size_t mostNames = 6;
-
 struct Size {
   int width = 0, height = 0;
 };
@@ -45,43 +42,35 @@ render::View parseView(const std::string& text) {
   return render::View::ThreeQuarter;
 }
 
-/// Natural clips near-black and solid; the others see-through beside them, else a colour each.
+/// Natural clips near-black, the others in one colour beside them, else in a colour each.
 render::SceneSpec sceneOf(std::vector<Clip> natural, std::vector<Clip> clips,
                           const RenderOptions& options) {
-  render::SceneSpec scene;
+  std::vector<render::SceneMotion> motions;
+  const double strobeS = options.strobeS > 0.0 ? options.strobeS : 0.4;
+  const auto add = [&](Clip& clip, const std::string& system, const render::Colour& colour) {
+    motions.push_back({.clip = std::make_shared<const Clip>(std::move(clip)),
+                       .system = system,
+                       .colour = colour,
+                       .strobeS = strobeS});
+  };
+  for (Clip& clip : natural) add(clip, "natural", render::naturalColour());
+  const bool alone = clips.size() == 1;
+  for (size_t i = 0; i < clips.size(); ++i) {
+    const std::string name = clips[i].name;
+    if (natural.empty())
+      add(clips[i], name, alone ? render::naturalColour() : render::colourOf(static_cast<int>(i)));
+    else
+      add(clips[i], alone ? name : "samples", render::colourOf(0));
+  }
+  render::SceneSpec scene = render::sceneOfMotions(std::move(motions));
   scene.title = options.title;
   scene.view = parseView(options.camera);
   scene.orthographic = options.orthographic;
-  const double strobeS = options.strobeS > 0.0 ? options.strobeS : 0.4;
-  const auto add = [&](Clip& clip, const std::string& system, const render::Colour& colour,
-                       double opacity) {
-    render::SceneMotion motion;
-    motion.clip = std::make_shared<const Clip>(std::move(clip));
-    motion.system = system;
-    motion.colour = colour;
-    motion.opacity = opacity;
-    motion.strobeS = strobeS;
-    scene.motions.push_back(std::move(motion));
-  };
-  for (Clip& clip : natural) add(clip, "natural", render::naturalColour(), 1.0);
-  const bool named = clips.size() <= mostNames;
-  const double opacity = std::clamp(1.4 / static_cast<double>(clips.size()), 0.2, 0.6);
-  for (size_t i = 0; i < clips.size(); ++i) {
-    const std::string name = clips[i].name;
-    if (natural.empty()) {
-      const bool alone = clips.size() == 1;
-      add(clips[i], named ? name : "",
-          alone ? render::naturalColour() : render::colourOf(static_cast<int>(i)), 1.0);
-    } else {
-      add(clips[i], clips.size() == 1 ? name : "samples", render::colourOf(0), opacity);
-    }
-  }
   return scene;
 }
 
 render::Recipe recipeOf(const Context& context, const std::vector<fs::path>& files) {
-  render::Recipe recipe = {
-      {"program", "marey"}, {"version", MAREY_VERSION}, {"command", context.commandLine}};
+  render::Recipe recipe = {{"marey", MAREY_VERSION}, {"command", context.commandLine}};
   std::string names;
   for (const fs::path& file : files) names += (names.empty() ? "" : ", ") + file.string();
   recipe.emplace_back("inputs", names);

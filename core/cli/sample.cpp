@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/fit_report.h"
 #include "experiment/path_choice.h"
+#include "experiment/recipe.h"
 #include "io/clip_io.h"
 
 namespace marey::cli {
@@ -24,11 +25,13 @@ struct Options {
 };
 
 Json recipe(const Options& o, const MotionModel& model, const Context& context) {
-  return {{"marey", MAREY_VERSION},        {"command", context.commandLine},
-          {"model", model.info().variant}, {"model_hash", model.info().hash},
-          {"path", o.path.path},           {"seed", context.seed},
-          {"temperature", o.temperature},  {"start", o.start},
-          {"warm_up_s", o.warmUp}};
+  Json out = motionRecipe({}, SampleOrigin{model.info().hash, context.seed, o.temperature});
+  out["command"] = context.commandLine;
+  out["model"] = model.info().variant;
+  out["path"] = o.path.path;
+  out["start"] = o.start;
+  out["warm_up_s"] = o.warmUp;
+  return out;
 }
 
 void run(Options& o, const Context& context) {

@@ -4,6 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "io/asf_amc.h"
+#include "io/euler_order.h"
 #include "io/normalise.h"
 #include "io/text.h"
 
@@ -14,8 +15,9 @@ constexpr double kCmuFps = 120.0;
 
 class AmcParser {
  public:
-  AmcParser(std::string_view bytes, const std::string& origin, const AsfSkeleton& asf)
-      : m_lines(bytes, origin), m_asf(asf), m_degrees(asf.degrees) {
+  AmcParser(std::string_view bytes, const std::string& origin, const AsfSkeleton& asf,
+            const std::vector<std::vector<size_t>>& turns)
+      : m_lines(bytes, origin), m_asf(asf), m_turns(turns), m_degrees(asf.degrees) {
     for (int j = 0; j < asf.skeleton.jointCount(); ++j) {
       m_joints.emplace(asf.skeleton.names[static_cast<size_t>(j)], j);
       if (!asf.channels[static_cast<size_t>(j)].empty()) ++m_moving;
@@ -85,12 +87,15 @@ class AmcParser {
     const double unit = m_degrees ? std::numbers::pi / 180.0 : 1.0;
     Quatd motion = Quatd::Identity();
     Vec3d shift = Vec3d::Zero();
-    for (const AsfChannel& channel : m_asf.channels[j]) {
-      const double value = take(j, rest);
-      if (channel.rotation)
-        motion = axisRotation(channel.axis, value * unit) * motion;
-      else
-        shift[channel.axis] += value;
+    const std::vector<AsfChannel>& channels = m_asf.channels[j];
+    m_values.clear();
+    for (const AsfChannel& channel : channels) {
+      m_values.push_back(take(j, rest));
+      if (!channel.rotation) shift[channel.axis] += m_values.back();
+    }
+    for (const size_t turn : m_turns[j]) {
+      const size_t c = channels.size() - 1 - turn;
+      motion = motion * axisRotation(channels[c].axis, m_values[c] * unit);
     }
     if (!trim(rest).empty())
       throw InputError(place(j), fmt::format("{} numbers", m_asf.channels[j].size()),
@@ -118,6 +123,8 @@ class AmcParser {
 
   LineReader m_lines;
   const AsfSkeleton& m_asf;
+  const std::vector<std::vector<size_t>>& m_turns;  ///< see intrinsicAxes
+  std::vector<double> m_values;                     ///< of one bone's line
   bool m_degrees = true;
   std::map<std::string, int, std::less<>> m_joints;
   size_t m_moving = 0;        ///< joints with degrees of freedom
@@ -128,11 +135,11 @@ class AmcParser {
   JointTransforms m_out;
 };
 
-/// Intrinsic order: the list backwards, since its turns are about fixed axes.
-std::string rotationOrder(const std::vector<AsfChannel>& channels) {
-  std::string out;
+/// Axes of the channels for turnsInOrder: the list backwards, since its turns are about fixed axes.
+std::vector<int> intrinsicAxes(const std::vector<AsfChannel>& channels) {
+  std::vector<int> out;
   for (auto it = channels.rbegin(); it != channels.rend(); ++it)
-    if (it->rotation) out += "XYZ"[it->axis];
+    out.push_back(it->rotation ? it->axis : -1);
   return out;
 }
 
@@ -159,7 +166,13 @@ Clip parseAmc(std::string_view bytes, const std::string& origin, const AsfSkelet
               const ReadOptions& options) {
   Clip clip;
   clip.name = std::filesystem::path(origin).stem().string();
-  clip.transforms = AmcParser(bytes, origin, asf).parse();
+  std::vector<std::vector<size_t>> turns;
+  for (const auto& channels : asf.channels) {
+    const std::vector<int> axes = intrinsicAxes(channels);
+    turns.push_back(turnsInOrder(axes, options.eulerOrder));
+    clip.source.eulerOrders.push_back(orderText(axes, turns.back()));
+  }
+  clip.transforms = AmcParser(bytes, origin, asf, turns).parse();
   clip.skeleton = std::make_shared<const Skeleton>(asf.skeleton);
   clip.fps = kCmuFps;
   clip.source.path = origin;
@@ -168,8 +181,8 @@ Clip parseAmc(std::string_view bytes, const std::string& origin, const AsfSkelet
   if (!options.fps)
     clip.source.notes.push_back(
         "AMC states no frame rate: 120 is assumed, as in the CMU data base");
-  for (const auto& channels : asf.channels)
-    clip.source.eulerOrders.push_back(rotationOrder(channels));
+  if (!options.eulerOrder.empty())
+    clip.source.notes.push_back("Euler order " + options.eulerOrder + " as given");
   return normalised(std::move(clip), {.unit = asf.unit, .up = "y"}, options);
 }
 

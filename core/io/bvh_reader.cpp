@@ -1,15 +1,20 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <unordered_set>
 
 #include "io/bvh.h"
+#include "io/euler_order.h"
 #include "io/normalise.h"
 #include "io/text.h"
 #include "motion/rotation.h"
 
 namespace marey::io {
 namespace {
+
+/// Of one joint: three positions and up to six turns; no writer has more.
+constexpr size_t kMostChannels = 9;
 
 struct Channel {
   int axis = 0;
@@ -156,8 +161,8 @@ class HierarchyParser {
     if (!channels.empty()) throw InputError(m_lines.place(), "CHANNELS once per joint", "it twice");
     const std::string_view countWord = takeWord(m_rest);
     const std::optional<double> count = parseNumber(countWord);
-    constexpr double kMost = 9.0;  // three positions and up to six turns; no writer has more
-    if (!count || *count < 0.0 || *count > kMost || *count != std::floor(*count))
+    if (!count || *count < 0.0 || *count > static_cast<double>(kMostChannels) ||
+        *count != std::floor(*count))
       throw InputError(m_lines.place("CHANNELS"), "a number of channels from 0 to 9",
                        excerpt(countWord));
     for (int i = 0; i < static_cast<int>(*count); ++i) channels.push_back(takeChannel());
@@ -242,8 +247,12 @@ void turn(Quatd& q, int axis, double degrees) {
 /// The numbers of one frame's line into one local transform per joint.
 class RowReader {
  public:
-  RowReader(const Hierarchy& hierarchy, const LineReader& lines)
-      : m_hierarchy(hierarchy), m_lines(lines), m_expected(hierarchy.channelCount()) {}
+  RowReader(const Hierarchy& hierarchy, const std::vector<std::vector<size_t>>& turns,
+            const LineReader& lines)
+      : m_hierarchy(hierarchy),
+        m_turns(turns),
+        m_lines(lines),
+        m_expected(hierarchy.channelCount()) {}
 
   void read(std::string_view row, int64_t frame, JointTransforms& out) const {
     size_t found = 0;
@@ -251,13 +260,13 @@ class RowReader {
     for (size_t j = 0; j < s.names.size(); ++j) {
       Quatd rotation = Quatd::Identity();
       Vec3 translation = s.offsets[j];
-      for (const Channel& channel : m_hierarchy.channels[j]) {
-        const double value = take(row, frame, found++);
-        if (channel.rotation)
-          turn(rotation, channel.axis, value);
-        else
-          translation[channel.axis] = static_cast<float>(value);
+      const std::vector<Channel>& channels = m_hierarchy.channels[j];
+      std::array<double, kMostChannels> values{};
+      for (size_t c = 0; c < channels.size(); ++c) {
+        values[c] = take(row, frame, found++);
+        if (!channels[c].rotation) translation[channels[c].axis] = static_cast<float>(values[c]);
       }
+      for (const size_t c : m_turns[j]) turn(rotation, channels[c].axis, values[c]);
       out.rotations.push_back(rotation.cast<float>().normalized());
       out.translations.push_back(translation);
     }
@@ -285,11 +294,13 @@ class RowReader {
   }
 
   const Hierarchy& m_hierarchy;
+  const std::vector<std::vector<size_t>>& m_turns;
   const LineReader& m_lines;
   size_t m_expected;
 };
 
 JointTransforms readRows(LineReader& lines, const Hierarchy& hierarchy,
+                         const std::vector<std::vector<size_t>>& turns,
                          const MotionHeader& header) {
   // A header may promise anything: memory is taken for what the rest of the file can hold.
   const size_t shortestRow = std::max<size_t>(2 * hierarchy.channelCount(), 1);
@@ -297,7 +308,7 @@ JointTransforms readRows(LineReader& lines, const Hierarchy& hierarchy,
   JointTransforms out;
   out.rotations.reserve(room * hierarchy.skeleton.names.size());
   out.translations.reserve(room * hierarchy.skeleton.names.size());
-  const RowReader rows(hierarchy, lines);
+  const RowReader rows(hierarchy, turns, lines);
   size_t frames = 0;
   while (const auto line = lines.nextFilled()) {
     if (frames == header.frames)
@@ -311,10 +322,9 @@ JointTransforms readRows(LineReader& lines, const Hierarchy& hierarchy,
   return out;
 }
 
-std::string rotationOrder(const std::vector<Channel>& channels) {
-  std::string out;
-  for (const Channel& channel : channels)
-    if (channel.rotation) out += "XYZ"[channel.axis];
+std::vector<int> turnAxes(const std::vector<Channel>& channels) {
+  std::vector<int> out;
+  for (const Channel& channel : channels) out.push_back(channel.rotation ? channel.axis : -1);
   return out;
 }
 
@@ -356,14 +366,20 @@ Clip parseBvh(std::string_view bytes, const std::string& origin, const ReadOptio
   const MotionHeader header = readMotionHeader(lines);
   Clip clip;
   clip.name = std::filesystem::path(origin).stem().string();
-  clip.transforms = readRows(lines, hierarchy, header);
+  std::vector<std::vector<size_t>> turns;
+  for (const auto& channels : hierarchy.channels) {
+    const std::vector<int> axes = turnAxes(channels);
+    turns.push_back(turnsInOrder(axes, options.eulerOrder));
+    clip.source.eulerOrders.push_back(orderText(axes, turns.back()));
+  }
+  clip.transforms = readRows(lines, hierarchy, turns, header);
   clip.fps = header.rate.fps;
   clip.source.path = origin;
   clip.source.format = "bvh";
   clip.source.fps = 1.0 / parseNumber(header.frameTime).value_or(1.0);
-  for (const auto& channels : hierarchy.channels)
-    clip.source.eulerOrders.push_back(rotationOrder(channels));
   clip.source.notes = std::move(hierarchy.notes);
+  if (!options.eulerOrder.empty())
+    clip.source.notes.push_back("Euler order " + options.eulerOrder + " as given");
   if (header.rate.snapped)
     clip.source.notes.push_back(
         fmt::format("frame time {} is read as 1/{:.6g} s", header.frameTime, header.rate.fps));

@@ -24,7 +24,8 @@ std::unique_ptr<FrameSink> openEncoded(const std::filesystem::path& path, VideoK
 std::unique_ptr<FrameSink> openGif(const std::filesystem::path& path, const VideoFormat& format,
                                    const Recipe& recipe);
 /// A PNG per frame, numbered from 0.
-std::unique_ptr<FrameSink> openPngFrames(const std::filesystem::path& path, const Recipe& recipe);
+std::unique_ptr<FrameSink> openPngFrames(const std::filesystem::path& path,
+                                         const VideoFormat& format, const Recipe& recipe);
 
 /// Throws UsageError unless the name of a numbered picture has one template, and its folder none.
 void checkFrameTemplate(const std::filesystem::path& path);

@@ -281,6 +281,17 @@ Camera LiveScene::camera() const {
   return m_internals->camera();
 }
 
+Viewpoint LiveScene::viewpoint() const {
+  return {camera(), m_internals->slant, m_internals->time};
+}
+
+void LiveScene::setViewpoint(const Viewpoint& viewpoint) {
+  setTime(viewpoint.timeS);
+  m_internals->apply(viewpoint.camera);
+  m_internals->slant = viewpoint.light;
+  m_internals->sceneChanged = true;
+}
+
 std::optional<Hit> LiveScene::pick(double x, double y, int width, int height, double reach) const {
   constexpr double alike = 3.0;  // pixels; of joints over each other the one in front is meant
   const Camera camera = m_internals->camera();

@@ -56,6 +56,13 @@ struct LiveOptions {
   double gridM = 0.5;                 ///< floor cells, metres; every metre is drawn stronger
 };
 
+/// How a scene is seen, so that another one can be seen so.
+struct Viewpoint {
+  Camera camera;
+  Eigen::Vector2f light{0.34F, 0.2F};  ///< x, z by which a metre of height shifts its shadow
+  double timeS = 0.0;                  ///< at which a following camera stands there
+};
+
 /// What lies under the mouse.
 struct Hit {
   size_t motion = 0;  ///< index into the motions
@@ -120,6 +127,9 @@ class LiveScene {
   void zoom(double factor);
   /// The camera as it is, following included.
   Camera camera() const;
+  Viewpoint viewpoint() const;
+  /// Takes the camera and the light of another scene, and its time, at which they hold.
+  void setViewpoint(const Viewpoint& viewpoint);
 
   /// The joint within `reach` pixels that is nearest on screen; of joints about as near, the one
   /// in front. Ghosts are not picked.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "base/error.h"
 #include "render/bodies.h"
@@ -356,6 +357,28 @@ Image SceneRenderer::frame(double timeS, bool follow, bool trail) {
 
 double SceneRenderer::seconds() const {
   return longestS(m_internals->spec);
+}
+
+double sampleOpacity(size_t samples, bool besideNatural) {
+  const auto count = static_cast<double>(std::max<size_t>(1, samples));
+  return besideNatural ? std::clamp(1.4 / count, 0.2, 0.6) : std::clamp(3.0 / count, 0.25, 1.0);
+}
+
+SceneSpec sceneOfMotions(std::vector<SceneMotion> motions) {
+  constexpr size_t mostNames = 6;
+  const auto isNatural = [](const SceneMotion& m) { return m.colour == naturalColour(); };
+  const auto natural =
+      static_cast<size_t>(std::count_if(motions.begin(), motions.end(), isNatural));
+  const double opacity = sampleOpacity(motions.size() - natural, natural > 0);
+  std::set<std::string> names;
+  for (SceneMotion& motion : motions) {
+    motion.opacity = isNatural(motion) ? 1.0 : opacity;
+    names.insert(motion.system);
+  }
+  SceneSpec scene;
+  scene.motions = std::move(motions);
+  scene.legend = names.size() <= mostNames;
+  return scene;
 }
 
 Image renderScene(const SceneSpec& spec, int width, int height) {

@@ -37,6 +37,13 @@ struct SceneSpec {
   double gridM = 0.5;  ///< floor cells, metres; 0.5 or 1
 };
 
+/// Opacity of figures that stand for what a model does: the more of them, the fainter, so that one
+/// sees how they spread; beside natural motion never solid.
+double sampleOpacity(size_t samples, bool besideNatural);
+/// The picture of a set of motions, wherever it is made: motions in the natural colour are solid,
+/// all others get sampleOpacity, and names that no longer fit into one line of the legend go.
+SceneSpec sceneOfMotions(std::vector<SceneMotion> motions);
+
 /// Draws one scene as a still or frame by frame. Holds an OpenGL context without a display, so
 /// creating one takes a few tenths of a second; use it from one thread at a time.
 class SceneRenderer {

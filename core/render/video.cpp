@@ -42,7 +42,7 @@ std::unique_ptr<FrameSink> open(const std::filesystem::path& path, const VideoFo
   const VideoKind kind = requireKind(path);
   checkFormat(path, kind, format);
   if (kind == VideoKind::Gif) return openGif(path, format, recipe);
-  if (kind == VideoKind::PngFrames) return openPngFrames(path, recipe);
+  if (kind == VideoKind::PngFrames) return openPngFrames(path, format, recipe);
   return openEncoded(path, kind, format, recipe);
 }
 
@@ -98,7 +98,8 @@ int writeSceneVideo(const std::filesystem::path& path, const SceneSpec& scene,
   const int frames =
       std::max(1, static_cast<int>(std::floor(renderer.seconds() * format.fps + 1e-6)));
   // Known before minutes of drawing.
-  if (videoKind(path) == VideoKind::PngFrames) requireNoLaterFrame(path, frames);
+  if (videoKind(path) == VideoKind::PngFrames && !format.replaceLonger)
+    requireNoLaterFrame(path, frames);
   for (int k = 0; k < frames; ++k) {
     progress.throwIfCancelled();
     writer.add(renderer.frame(k / format.fps, options.follow, options.trail));

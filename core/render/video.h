@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,10 @@ enum class VideoKind {
 /// names. Throws UsageError for a .png with other or several braces.
 std::optional<VideoKind> videoKind(const std::filesystem::path& path);
 
+/// The pictures that lie at the places of a numbered picture's names, by number; empty for the
+/// names of other kinds.
+std::map<int, std::filesystem::path> framesThere(const std::filesystem::path& path);
+
 /// Quality and key frames are fixed, so that videos of one study are encoded alike. The same
 /// frames give the same bytes.
 struct VideoFormat {
@@ -31,6 +36,8 @@ struct VideoFormat {
   int quality = 18;        ///< constant rate factor of H.264: 0 lossless, 18 no visible loss,
                            ///< 51 worst; scaled for VP9, without effect on GIF and PNG
   int keyFrameEvery = 30;  ///< frames
+  /// Numbered pictures of a longer video that was there go away with it; else they are refused.
+  bool replaceLonger = false;
 };
 
 /// Collects frames; the file (or all pictures of frames) appears, whole, with `finish`.

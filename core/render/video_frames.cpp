@@ -29,8 +29,9 @@ FrameTemplate frameTemplate(const fs::path& path) {
 
 class PngSink : public FrameSink {
  public:
-  PngSink(const fs::path& path, const Recipe& recipe)
+  PngSink(const fs::path& path, const VideoFormat& format, const Recipe& recipe)
       : m_path(path),
+        m_replaceLonger(format.replaceLonger),
         m_template(frameTemplate(path)),
         m_recipe(recipe),
         m_folder(path.has_parent_path() ? path.parent_path() : fs::path(".")) {}
@@ -43,12 +44,19 @@ class PngSink : public FrameSink {
   }
 
   void finish() override {
-    requireNoLaterFrame(m_path, m_count);
+    if (!m_replaceLonger) requireNoLaterFrame(m_path, m_count);
     m_folder.commit();
+    if (!m_replaceLonger) return;
+    for (const auto& [number, file] : framesThere(m_path)) {
+      std::error_code ec;
+      if (number >= m_count && !fs::remove(file, ec) && ec)
+        throw FileError(fmt::format("{}: cannot remove: {}", file.string(), ec.message()));
+    }
   }
 
  private:
   fs::path m_path;
+  bool m_replaceLonger;
   FrameTemplate m_template;
   Recipe m_recipe;
   StagedFolder m_folder;
@@ -69,8 +77,28 @@ void requireNoLaterFrame(const fs::path& path, int count) {
                "{}, the rest of a longer one: remove it or choose another name", next.string());
 }
 
-std::unique_ptr<FrameSink> openPngFrames(const fs::path& path, const Recipe& recipe) {
-  return std::make_unique<PngSink>(path, recipe);
+std::map<int, fs::path> framesThere(const fs::path& path) {
+  std::map<int, fs::path> out;
+  if (videoKind(path) != VideoKind::PngFrames) return out;
+  const FrameTemplate names = frameTemplate(path);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const size_t fixed = names.before.size() + names.after.size();
+  constexpr size_t kMostDigits = 9;
+  std::error_code ec;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    const std::string name = it->path().filename().string();
+    if (name.size() <= fixed || name.size() > fixed + kMostDigits) continue;
+    const std::string digits = name.substr(names.before.size(), name.size() - fixed);
+    if (digits.find_first_not_of("0123456789") != std::string::npos) continue;
+    const int number = std::stoi(digits);
+    if (names.name(number) == name) out.emplace(number, it->path());
+  }
+  return out;
+}
+
+std::unique_ptr<FrameSink> openPngFrames(const fs::path& path, const VideoFormat& format,
+                                         const Recipe& recipe) {
+  return std::make_unique<PngSink>(path, format, recipe);
 }
 
 }  // namespace marey::render

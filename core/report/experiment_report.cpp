@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "experiment/recipe.h"
 #include "stats/footsteps.h"
 #include "stats/joint_samples.h"
 
@@ -132,16 +133,17 @@ void addGait(const ExperimentResult& r, ReportData& out) {
   out.gaits.push_back(std::move(panel));
 }
 
-render::Recipe recipeOf(const ExperimentResult& r, const std::string& command) {
-  render::Recipe out{{"marey", MAREY_VERSION},
-                     {"command", command},
-                     {"experiment", r.hash},
-                     {"seed", std::to_string(r.experiment.seed)},
-                     {"fps", fmt::format("{}", r.experiment.fps)},
-                     {"natural clips", std::to_string(r.natural.size())}};
+render::Recipe recipeFor(const ExperimentResult& r, const std::string& command) {
+  std::vector<RecipeSet> sets = {{"natural", {}, std::to_string(r.natural.size())}};
+  for (const auto& s : r.systems)
+    sets.push_back(
+        {s.name, SampleOrigin{s.info.hash, r.experiment.seed, s.temperature},
+         std::to_string(r.experiment.samples * static_cast<int>(r.experiment.paths.size()))});
+  render::Recipe out = recipeOf(r.hash, sets);
+  out.emplace_back("command", command);
+  out.emplace_back("fps", fmt::format("{}", r.experiment.fps));
   for (const auto& s : r.systems) {
-    out.emplace_back("model " + s.name, s.info.variant + " " + s.info.hash);
-    out.emplace_back("temperature " + s.name, fmt::format("{}", s.temperature));
+    out.emplace_back("model " + s.name, s.info.variant);
     if (s.info.provenance.contains("steps"))
       out.emplace_back(
           "training " + s.name,
@@ -205,7 +207,7 @@ std::vector<DistributionPanel> distributionPanels(const ExperimentResult& r) {
 ReportData reportOf(const ExperimentResult& r, const std::string& command, Progress& progress) {
   ReportData out{.title = r.experiment.title,
                  .summary = summaryOf(r),
-                 .recipe = recipeOf(r, command),
+                 .recipe = recipeFor(r, command),
                  .systems = systemsOf(r)};
   addHeldOutScene(r, out);
   addPathScenes(r, out);

@@ -22,11 +22,6 @@ std::string figureId(const std::string& kind, int number) {
   return fmt::format("{}-{}", kind, number);
 }
 
-/// Samples grow fainter the more of them overlap.
-double sampleOpacity(size_t count) {
-  return std::clamp(1.3 / static_cast<double>(count), 0.22, 0.6);
-}
-
 std::shared_ptr<const Clip> shortened(const std::shared_ptr<const Clip>& clip, double seconds) {
   const int frames = static_cast<int>(std::lround(seconds * clip->fps)) + 1;
   if (seconds <= 0.0 || frames >= clip->frameCount()) return clip;
@@ -151,6 +146,9 @@ Figure sceneFigure(const ReportData& data, const ScenePanel& panel, int number) 
   scene.path = panel.line;
   scene.view = panel.view;
   scene.orthographic = panel.orthographic;
+  const bool natural = std::any_of(data.systems.begin(), data.systems.end(), [&](const auto& s) {
+    return s.natural && s.clips.contains(panel.path);
+  });
   size_t shown = 0;
   double seconds = 0.0, strobeS = panel.strobeS;
   for (const ReportSystem& system : data.systems) {
@@ -160,11 +158,12 @@ Figure sceneFigure(const ReportData& data, const ScenePanel& panel, int number) 
     for (size_t i = 0; i < count; ++i) {
       const auto clip = shortened(found->second[i], panel.seconds);
       if (strobeS <= 0.0) strobeS = autoStrobe(*clip);
-      scene.motions.push_back({.clip = clip,
-                               .system = system.name,
-                               .colour = systemColour(system),
-                               .opacity = system.natural ? 1.0 : sampleOpacity(count),
-                               .strobeS = strobeS});
+      scene.motions.push_back(
+          {.clip = clip,
+           .system = system.name,
+           .colour = systemColour(system),
+           .opacity = system.natural ? 1.0 : render::sampleOpacity(count, natural),
+           .strobeS = strobeS});
       seconds = std::max(seconds, clip->seconds());
       ++shown;
     }

@@ -13,6 +13,7 @@
 
 #include "panels/loss_chart.h"
 #include "panels/paint_style.h"
+#include "panels/workspace_chart.h"
 
 #include "base/error.h"
 
@@ -31,6 +32,15 @@ class CheckpointPanel : public QWidget {
     layout->addLayout(buildFolder());
     m_chart = new LossChart(this);
     m_chart->setObjectName(QStringLiteral("checkpointChart"));
+    ChartOut out =
+        chartOutOf(workspace, QStringLiteral("loss"), [this] { return m_chart->chart(); });
+    // The curves are those of a training run, not of the document.
+    out.recipe = [this] {
+      return render::Recipe{{"marey", MAREY_VERSION},
+                            {"plot", "loss"},
+                            {"training_run", m_folder->text().toStdString()}};
+    };
+    new ChartMenu(m_chart, std::move(out));
     buildTable();
     // Side by side: docks are wide rather than high.
     auto* row = new QHBoxLayout;

@@ -10,6 +10,7 @@
 
 #include "panels/plot_panel.h"
 #include "panels/value_table.h"
+#include "panels/workspace_chart.h"
 #include "plots/body_map.h"
 #include "plots/distribution_data.h"
 
@@ -113,6 +114,8 @@ class DistributionsPanel : public PlotPanel {
     m_map = new BodyMap(this);
     m_map->setObjectName(QStringLiteral("distributionsBodyMap"));
     m_map->setMaximumWidth(240);
+    new ChartMenu(m_map, chartOutOf(workspace(), QStringLiteral("body-map"),
+                                    [this] { return m_map->chart(); }));
     m_table = new ValueTable(this);
     m_table->setObjectName(QStringLiteral("distributionsTable"));
     m_table->setMaximumHeight(150);

@@ -4,7 +4,6 @@
 #include <QComboBox>
 #include <QDialog>
 #include <QDir>
-#include <QDoubleSpinBox>
 #include <QFileDialog>
 #include <QFormLayout>
 #include <QGroupBox>
@@ -12,7 +11,6 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QMessageBox>
-#include <QPointer>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QRadioButton>
@@ -21,37 +19,42 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "panels/motion_export.h"
+#include "panels/export_picture_form.h"
 
 namespace marey::gui {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr double kMostGifFps = 50.0, kMostFps = 240.0;
-constexpr int kLeastPixels = 64, kMostPixels = 8192;
-
 class ExportDialog : public QDialog {
  public:
-  ExportDialog(Workspace& workspace, QWidget* parent) : QDialog(parent), m_workspace(workspace) {
+  ExportDialog(Workspace& workspace, QWidget* parent)
+      : QDialog(parent),
+        m_workspace(workspace),
+        m_picture(new ExportPictureForm(
+            parent != nullptr ? parent->window()->findChild<SceneView*>() : nullptr, this)) {
     setObjectName(QStringLiteral("exportDialog"));
     setWindowTitle(tr("Export motions"));
     setAttribute(Qt::WA_DeleteOnClose);
     auto* layout = new QVBoxLayout(this);
     layout->addLayout(buildWhat());
-    layout->addWidget(buildPicture());
+    layout->addWidget(m_picture);
     layout->addLayout(buildWhere());
     layout->addWidget(buildResult());
     layout->addLayout(buildButtons());
-    connect(&workspace, &Workspace::selectionChanged, this, &ExportDialog::refresh);
-    connect(&workspace, &Workspace::visibilityChanged, this, &ExportDialog::refresh);
-    connect(&workspace, &Workspace::rangeChanged, this, &ExportDialog::refresh);
+    connect(&workspace, &Workspace::selectionChanged, this, &ExportDialog::refreshItems);
+    connect(&workspace, &Workspace::visibilityChanged, this, &ExportDialog::refreshItems);
+    connect(&workspace, &Workspace::rangeChanged, this, &ExportDialog::refreshItems);
     connect(&workspace.jobs(), &JobQueue::changed, this, &ExportDialog::refreshProgress);
     connect(&workspace.jobs(), &JobQueue::ended, this, [this](int id, bool successful) {
       if (id == m_job) finish(successful);
     });
+    connect(&workspace.jobs(), &JobQueue::failed, this,
+            [this](const QString& title, const QString& error) {
+              if (title == m_title) m_done->setText(tr("Nothing was written. %1").arg(error));
+            });
     m_selected->setChecked(!workspace.selection().motions.empty());
     m_visible->setChecked(workspace.selection().motions.empty());
-    refresh();
+    refreshItems();
     resize(520, 560);
   }
 
@@ -82,66 +85,11 @@ class ExportDialog : public QDialog {
     form->addRow({}, m_visible);
     form->addRow({}, m_range);
     form->addRow(tr("Format"), m_format);
-    connect(m_selected, &QRadioButton::toggled, this, &ExportDialog::refresh);
-    connect(m_range, &QCheckBox::toggled, this, &ExportDialog::refresh);
+    connect(m_selected, &QRadioButton::toggled, this, &ExportDialog::refreshItems);
+    connect(m_range, &QCheckBox::toggled, this, &ExportDialog::refreshItems);
     connect(m_format, qOverload<int>(&QComboBox::currentIndexChanged), this,
             &ExportDialog::refresh);
     return form;
-  }
-
-  QSpinBox* pixels(const char* name, int value) {
-    auto* box = new QSpinBox(this);
-    box->setObjectName(QLatin1String(name));
-    box->setRange(kLeastPixels, kMostPixels);
-    box->setSingleStep(2);
-    box->setValue(value);
-    return box;
-  }
-
-  QWidget* buildPicture() {
-    m_picture = new QGroupBox(tr("Picture"), this);
-    auto* form = new QFormLayout(m_picture);
-    m_width = pixels("exportWidth", 1280);
-    m_height = pixels("exportHeight", 720);
-    auto* size = new QHBoxLayout;
-    size->addWidget(m_width);
-    size->addWidget(new QLabel(QStringLiteral("×"), m_picture));
-    size->addWidget(m_height);
-    size->addStretch(1);
-    m_fps = new QDoubleSpinBox(this);
-    m_fps->setObjectName(QStringLiteral("exportFps"));
-    m_fps->setRange(1.0, kMostFps);
-    m_fps->setDecimals(1);
-    m_fps->setValue(30.0);
-    m_view = new QComboBox(this);
-    m_view->setObjectName(QStringLiteral("exportView"));
-    m_view->addItem(tr("From the side and above"), static_cast<int>(render::View::ThreeQuarter));
-    m_view->addItem(tr("From the side"), static_cast<int>(render::View::Side));
-    m_view->addItem(tr("From above"), static_cast<int>(render::View::Top));
-    m_follow = new QComboBox(this);
-    m_follow->setObjectName(QStringLiteral("exportCamera"));
-    m_follow->addItems({tr("Fixed"), tr("Following the figures")});
-    m_strobe = new QDoubleSpinBox(this);
-    m_strobe->setObjectName(QStringLiteral("exportStrobe"));
-    m_strobe->setRange(0.05, 60.0);
-    m_strobe->setSingleStep(0.1);
-    m_strobe->setValue(0.4);
-    m_strobe->setPrefix(tr("a figure every "));
-    m_strobe->setSuffix(tr(" s"));
-    m_trail = new QCheckBox(tr("Earlier figures stay, lighter"), this);
-    m_trail->setObjectName(QStringLiteral("exportTrail"));
-    m_path = new QCheckBox(tr("Path that was asked for"), this);
-    m_path->setObjectName(QStringLiteral("exportPath"));
-    m_path->setChecked(true);
-    form->addRow(tr("Size in pixels"), size);
-    form->addRow(tr("Frames per second"), m_fps);
-    form->addRow(tr("View"), m_view);
-    form->addRow(tr("Camera"), m_follow);
-    form->addRow(tr("Trail"), m_trail);
-    form->addRow(tr("Exposures"), m_strobe);
-    form->addRow(tr("On the floor"), m_path);
-    connect(m_trail, &QCheckBox::toggled, this, &ExportDialog::refresh);
-    return m_picture;
   }
 
   QLayout* buildWhere() {
@@ -233,21 +181,23 @@ class ExportDialog : public QDialog {
     return m_workspace.visibleMotions();
   }
 
+  std::optional<TimeRange> range() const {
+    return m_range->isChecked() ? m_workspace.range() : std::nullopt;
+  }
+
+  /// What is written where; the pictures' looks are filled in when it is asked for.
   ExportRequest request() const {
-    const bool part = m_range->isChecked() && m_workspace.range().has_value();
     return {.format = format(),
             .folder = m_folder->text().toStdString(),
             .name = m_name->text().toStdString(),
-            .items = exportItems(m_workspace.experiment(), m_workspace.groups(), motions(),
-                                 part ? m_workspace.range() : std::nullopt),
-            .width = m_width->value(),
-            .height = m_height->value(),
-            .fps = m_fps->value(),
-            .view = static_cast<render::View>(m_view->currentData().toInt()),
-            .follow = m_follow->currentIndex() == 1,
-            .trail = m_trail->isChecked(),
-            .path = m_path->isChecked(),
-            .strobeS = m_strobe->value()};
+            .items = m_items,
+            .range = range()};
+  }
+
+  /// Names of the motions: worked out when these change, not at every letter of a folder's name.
+  void refreshItems() {
+    m_items = exportItems(m_workspace.experiment(), m_workspace.groups(), motions(), range());
+    refresh();
   }
 
   void refresh() {
@@ -256,16 +206,10 @@ class ExportDialog : public QDialog {
     m_selected->setText(tr("Selected (%1)").arg(selected));
     m_visible->setText(tr("All visible (%1)").arg(visible));
     m_range->setEnabled(m_workspace.range().has_value());
-    const bool video = isVideo(format());
     m_picture->setVisible(isPicture(format()));
-    m_fps->setEnabled(video);
-    m_fps->setMaximum(format() == ExportFormat::Gif ? kMostGifFps : kMostFps);
-    m_follow->setEnabled(video);
-    m_trail->setEnabled(video);
-    m_strobe->setEnabled(!video || m_trail->isChecked());
+    m_picture->setFormat(format());
     m_name->setEnabled(isPicture(format()));
-    const ExportRequest wanted = request();
-    const auto files = exportFiles(wanted);
+    const auto files = exportFiles(request());
     QStringList names;
     constexpr size_t kNamed = 3;
     for (size_t i = 0; i < std::min(kNamed, files.size()); ++i)
@@ -273,7 +217,7 @@ class ExportDialog : public QDialog {
     if (files.size() > kNamed) names += tr("… %1 files").arg(files.size());
     m_files->setText(names.join(QStringLiteral(", ")));
     refreshProgress();
-    m_run->setEnabled(m_job < 0 && !wanted.items.empty() && !m_folder->text().isEmpty());
+    m_run->setEnabled(m_job < 0 && !m_items.empty() && !m_folder->text().isEmpty());
   }
 
   void refreshProgress() {
@@ -284,32 +228,32 @@ class ExportDialog : public QDialog {
   }
 
   bool mayReplace(const ExportRequest& wanted) {
-    int there = 0;
-    for (const fs::path& file : exportFiles(wanted)) there += fs::exists(file) ? 1 : 0;
+    const auto there = static_cast<int>(replacedFiles(wanted).size());
     if (there == 0) return true;
-    return QMessageBox::question(
-               this, tr("Export motions"),
-               tr("%1 of the files are there already. Replace them?").arg(there)) ==
+    const QString question =
+        wanted.format == ExportFormat::PngFrames
+            ? tr("%1 numbered pictures of that name are there already. Replace them all?")
+            : tr("%1 of the files are there already. Replace them?");
+    return QMessageBox::question(this, tr("Export motions"), question.arg(there)) ==
            QMessageBox::Yes;
   }
 
   void run() {
+    // The document may have been edited since the motions were listed.
+    refreshItems();
     ExportRequest wanted = request();
-    // The encoders of videos halve the colours' resolution.
-    if (format() == ExportFormat::Mp4 || format() == ExportFormat::WebM) {
-      wanted.width -= wanted.width % 2;
-      wanted.height -= wanted.height % 2;
-    }
+    wanted.experimentHash = experimentHash(m_workspace.experiment());
+    if (isPicture(wanted.format)) m_picture->fill(wanted, m_selected->isChecked());
     if (!mayReplace(wanted)) return;
     QSettings().setValue(QStringLiteral("exportFolder"), m_folder->text());
     m_fit->hide();
     m_done->clear();
     m_result = std::make_shared<ExportResult>();
-    m_job =
-        m_workspace.jobs().start(Lane::Exports, tr("Exporting %1 motions").arg(wanted.items.size()),
-                                 [wanted, result = m_result](Progress& progress) {
-                                   *result = exportMotions(wanted, progress);
-                                 });
+    m_title = tr("Exporting %1 motions").arg(wanted.items.size());
+    m_job = m_workspace.jobs().start(Lane::Exports, m_title,
+                                     [wanted, result = m_result](Progress& progress) {
+                                       *result = exportMotions(wanted, progress);
+                                     });
     refresh();
   }
 
@@ -345,19 +289,13 @@ class ExportDialog : public QDialog {
   }
 
   Workspace& m_workspace;
+  ExportPictureForm* m_picture;
+  std::vector<ExportItem> m_items;
+  QString m_title;  ///< of the job
   QRadioButton* m_selected = nullptr;
   QRadioButton* m_visible = nullptr;
   QCheckBox* m_range = nullptr;
   QComboBox* m_format = nullptr;
-  QGroupBox* m_picture = nullptr;
-  QSpinBox* m_width = nullptr;
-  QSpinBox* m_height = nullptr;
-  QDoubleSpinBox* m_fps = nullptr;
-  QComboBox* m_view = nullptr;
-  QComboBox* m_follow = nullptr;
-  QDoubleSpinBox* m_strobe = nullptr;
-  QCheckBox* m_trail = nullptr;
-  QCheckBox* m_path = nullptr;
   QLineEdit* m_folder = nullptr;
   QLineEdit* m_name = nullptr;
   QLabel* m_files = nullptr;
@@ -372,6 +310,34 @@ class ExportDialog : public QDialog {
 };
 
 }  // namespace
+
+void saveScenePicture(Workspace& workspace, QWidget* parent) {
+  auto* view = parent->window()->findChild<SceneView*>();
+  if (view == nullptr) return;
+  const QString last = QSettings().value(QStringLiteral("exportFolder")).toString();
+  const QString file = QFileDialog::getSaveFileName(
+      parent, QObject::tr("Picture of the 3D view"),
+      (last.isEmpty() ? QDir::homePath() : last) + QStringLiteral("/scene.png"),
+      QObject::tr("PNG (*.png)"));
+  if (file.isEmpty()) return;
+  fs::path path = file.toStdString();
+  if (path.extension() != ".png") path += ".png";
+  const double ratio = view->devicePixelRatioF();
+  ExportRequest request{.format = ExportFormat::Still,
+                        .items = exportItems(workspace.experiment(), workspace.groups(),
+                                             workspace.visibleMotions(), std::nullopt),
+                        .range = std::nullopt,
+                        .experimentHash = experimentHash(workspace.experiment()),
+                        .width = static_cast<int>(ratio * view->width()),
+                        .height = static_cast<int>(ratio * view->height())};
+  copyScene(*view, request, false);
+  workspace.jobs().start(
+      Lane::Files, QObject::tr("Picture of the 3D view"), [request, path](Progress&) {
+        render::writePng(
+            path, render::drawLive(*request.shot, request.stillS, request.width, request.height),
+            pictureRecipe(request));
+      });
+}
 
 void showExportDialog(Workspace& workspace, QWidget* parent) {
   (new ExportDialog(workspace, parent))->show();

@@ -104,6 +104,29 @@ void GaitView::paintEvent(QPaintEvent* /*event*/) {
   painter.drawLine(QPointF(x, 0), QPointF(x, height()));
 }
 
+render::ChartGrid GaitView::chart() const {
+  if (m_rows.empty()) return {};
+  render::Chart chart{.title = tr("Foot contacts").toStdString(),
+                      .x = {.label = tr("time").toStdString(), .unit = "s"},
+                      .legend = render::LegendPlace::None};
+  std::string motion;
+  for (size_t i = 0; i < m_rows.size(); ++i) {
+    const GaitRow& row = m_rows[i];
+    if (row.first) motion = row.motion.toStdString();
+    const std::string name = motion + ", " + row.foot.toStdString();
+    chart.y.categories.push_back(name);
+    render::Series bars{
+        .kind = render::SeriesKind::Intervals, .name = name, .colour = row.colour, .width = 0.62};
+    for (const TimeRange& contact : row.contacts) {
+      bars.y.push_back(static_cast<double>(i) + 0.5);
+      bars.low.push_back(contact.beginS);
+      bars.high.push_back(contact.endS);
+    }
+    chart.series.push_back(std::move(bars));
+  }
+  return render::single(std::move(chart));
+}
+
 void GaitView::mousePressEvent(QMouseEvent* event) {
   if (event->button() == Qt::LeftButton && m_workspace.duration() > 0.0)
     m_workspace.setTime(m_ruler.axis().at(event->localPos().x()));

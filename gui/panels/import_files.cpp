@@ -19,6 +19,7 @@ Json toJson(const io::ReadOptions& options) {
   if (!options.unit.empty()) out["unit"] = options.unit;
   if (!options.up.empty()) out["up"] = options.up;
   if (options.fps) out["fps"] = *options.fps;
+  if (!options.eulerOrder.empty()) out["euler_order"] = options.eulerOrder;
   if (options.swapSides) out["swap_sides"] = true;
   if (!options.asf.empty()) out["asf"] = options.asf.string();
   return out;
@@ -58,13 +59,13 @@ std::vector<std::string> convertOverridden(const std::vector<ImportFile>& files,
   std::vector<std::string> out;
   std::set<std::string> taken, broken;  // broken: sources that are not taken as a whole
   for (const ImportFile& file : files)
-    if (!file.wanted || file.overridden()) broken.insert(file.source);
+    if (!file.taken() || file.overridden()) broken.insert(file.source);
   std::optional<StagedFolder> staged;
   for (size_t i = 0; i < files.size(); ++i) {
     const ImportFile& file = files[i];
     progress.throwIfCancelled();
     progress.report(static_cast<double>(i) / static_cast<double>(files.size()), file.path);
-    if (!file.wanted) continue;
+    if (!file.taken()) continue;
     if (!file.overridden()) {
       const std::string& name = broken.contains(file.source) ? file.path : file.source;
       if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);

@@ -14,11 +14,12 @@ struct ImportFile {
   std::string source;  ///< the file, folder or list that was given and holds it
   io::ReadOptions options;
   std::vector<io::DoctorReport> reports;  ///< one per clip; empty: not examined yet
-  bool wanted = true;
+  bool wanted = true;                     ///< by the user
 
   /// A document names files only, so what their readers should be told has to be carried out.
   bool overridden() const;
   bool readable() const;
+  bool taken() const { return wanted && readable(); }
 };
 
 /// Files of the given files, folders and lists. Throws as io::expandInputs does.

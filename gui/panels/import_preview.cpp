@@ -31,12 +31,17 @@ ImportPreview::ImportPreview(JobQueue& jobs, QWidget* parent)
   layout->addWidget(m_scrub);
 }
 
+ImportPreview::~ImportPreview() {
+  m_jobs.cancel(m_job);
+}
+
 void ImportPreview::show(const std::string& path, size_t number, const io::ReadOptions& options) {
   auto clip = std::make_shared<std::shared_ptr<const Clip>>();
   const int version = ++m_version;
   const QPointer<ImportPreview> self(this);
-  m_jobs.start(
-      Lane::Files, tr("Reading a preview"),
+  m_jobs.cancel(m_job);
+  m_job = m_jobs.start(
+      Lane::Previews, tr("Reading a preview"),
       [clip, number, path, options](Progress&) {
         try {
           std::vector<Clip> clips = io::readClips(path, options);

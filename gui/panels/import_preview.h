@@ -15,6 +15,8 @@ namespace marey::gui {
 class ImportPreview : public QWidget {
  public:
   ImportPreview(JobQueue& jobs, QWidget* parent);
+  /// Ends its reading.
+  ~ImportPreview() override;
   /// Reads the file in the background and shows its clip of that number.
   void show(const std::string& path, size_t number, const io::ReadOptions& options);
 
@@ -28,6 +30,7 @@ class ImportPreview : public QWidget {
   QSlider* m_scrub;
   std::shared_ptr<const Clip> m_clip;
   int m_version = 0;  ///< counts readings, so that a late one is not taken
+  int m_job = -1;
 };
 
 }  // namespace marey::gui

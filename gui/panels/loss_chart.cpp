@@ -150,6 +150,39 @@ void LossChart::paintEvent(QPaintEvent*) {
   }
 }
 
+render::ChartGrid LossChart::chart() const {
+  if (m_run.rows.empty()) return {};
+  const Axis axis = lossAxis();
+  render::Chart chart{.title = tr("Loss over training steps").toStdString(),
+                      .x = {.label = tr("training steps").toStdString()},
+                      .y = {.label = tr("loss").toStdString(),
+                            .unit = "bits/frame",
+                            .range = std::pair(axis.low, axis.high)}};
+  const std::tuple<QString, double LossRow::*, render::Colour> curves[] = {
+      {tr("training"), &LossRow::train, render::grey(0.55)},
+      {tr("validation"), &LossRow::valid, render::colourOf(0)},
+      {tr("test"), &LossRow::test, render::colourOf(1)}};
+  for (const auto& [name, value, colour] : curves) {
+    render::Series line{.name = name.toStdString(), .colour = colour};
+    for (const LossRow& row : m_run.rows) {
+      line.x.push_back(static_cast<double>(row.step));
+      line.y.push_back(row.*value);
+    }
+    const bool any =
+        std::any_of(line.y.begin(), line.y.end(), [](double v) { return std::isfinite(v); });
+    if (any) chart.series.push_back(std::move(line));
+  }
+  for (const Checkpoint& checkpoint : m_run.checkpoints)
+    chart.series.push_back({.kind = render::SeriesKind::VerticalRule,
+                            .name = checkpoint.name,
+                            .colour = render::grey(0.6),
+                            .x = {static_cast<double>(checkpoint.step)},
+                            .width = 1.0,
+                            .dashed = true,
+                            .inLegend = false});
+  return render::single(std::move(chart));
+}
+
 int LossChart::checkpointAt(const QPoint& at) const {
   int best = -1;
   double nearest = kNear;

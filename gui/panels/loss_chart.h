@@ -5,6 +5,8 @@
 
 #include "panels/training_run.h"
 
+#include "render/chart.h"
+
 namespace marey::gui {
 
 class LossChart : public QWidget {
@@ -14,6 +16,8 @@ class LossChart : public QWidget {
   void setRun(TrainingRun run);
   /// Index of the checkpoint that is lit up; -1: none.
   void setCurrent(int checkpoint);
+  /// The curves as a chart; without charts where there is no run.
+  render::ChartGrid chart() const;
 
  Q_SIGNALS:
   void checkpointClicked(int index);

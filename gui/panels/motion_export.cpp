@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "base/atomic_file.h"
@@ -39,25 +38,35 @@ const char* extensionOf(ExportFormat format) {
   return ".csv";
 }
 
-/// Null where nothing of the clip is inside the range.
+/// The first frame inside, and that after the last; none inside where they are not in order.
+std::pair<int, int> framesInside(const Clip& clip, const TimeRange& range) {
+  return {
+      std::max(0, static_cast<int>(std::ceil(range.beginS * clip.fps - 1e-9))),
+      std::min(clip.frameCount(), static_cast<int>(std::floor(range.endS * clip.fps + 1e-9)) + 1)};
+}
+
 ClipPtr inRange(const ClipPtr& clip, const std::optional<TimeRange>& range) {
   if (!range) return clip;
-  const int first = std::max(0, static_cast<int>(std::ceil(range->beginS * clip->fps - 1e-9)));
-  const int last = std::min(clip->frameCount(),
-                            static_cast<int>(std::floor(range->endS * clip->fps + 1e-9)) + 1);
-  if (first >= last) return nullptr;
+  const auto [first, last] = framesInside(*clip, *range);
   return std::make_shared<const Clip>(sliceFrames(*clip, first, last));
+}
+
+std::optional<SampleOrigin> originOf(const MotionGroup& group) {
+  if (!group.recipe) return std::nullopt;
+  return SampleOrigin{group.modelHash, group.recipe->seed, group.recipe->system.temperature};
 }
 
 Json recipeOf(const std::string& experiment, const MotionGroup& group, int index,
               const std::optional<TimeRange>& range) {
-  Json out = {{"marey", MAREY_VERSION}, {"experiment_hash", experiment}, {"group", group.name}};
+  Json out = motionRecipe(experiment, originOf(group));
+  out["group"] = group.name;
   if (group.recipe) {
-    out["model_hash"] = group.modelHash;
-    out["seed"] = group.recipe->seed;
-    out["temperature"] = group.recipe->system.temperature;
     out["sample"] = index;
     out["recipe"] = toJson(*group.recipe);
+  } else {
+    const Clip& clip = *group.motions[static_cast<size_t>(index)].clip;
+    if (!clip.source.path.empty()) out["source"] = clip.source.path;
+    out["clip"] = clip.name;
   }
   if (range) out["range_s"] = {range->beginS, range->endS};
   return out;
@@ -71,35 +80,42 @@ std::string nameOf(const MotionGroup& group, const Motion& motion, int index) {
                      safeName(group.recipe->path.name), index);
 }
 
-render::SceneSpec sceneOf(const ExportRequest& request) {
-  // Many figures over each other show how they spread only while one sees through them.
-  constexpr double kSolidFigures = 3.0, kFaintest = 0.25;
-  render::SceneSpec scene{.view = request.view};
-  const auto samples = std::count_if(request.items.begin(), request.items.end(), [](const auto& i) {
-    return i.colour != render::naturalColour();
-  });
-  const double opacity =
-      std::clamp(kSolidFigures / std::max(1.0, static_cast<double>(samples)), kFaintest, 1.0);
+render::SceneSpec figureOf(const ExportRequest& request) {
+  std::vector<render::SceneMotion> motions;
+  std::vector<RootFrame> path;
   for (const ExportItem& item : request.items) {
-    scene.motions.push_back({.clip = item.clip,
-                             .system = item.group,
-                             .colour = item.colour,
-                             .opacity = item.colour == render::naturalColour() ? 1.0 : opacity,
-                             .strobeS = request.strobeS});
-    if (request.path && scene.path.empty()) scene.path = item.wanted;
+    motions.push_back({.clip = inRange(item.clip, request.range),
+                       .system = item.legend,
+                       .colour = item.colour,
+                       .strobeS = request.strobeS});
+    if (request.path && path.empty()) path = item.wanted;
   }
+  render::SceneSpec scene = render::sceneOfMotions(std::move(motions));
+  scene.view = request.view;
+  scene.orthographic = request.orthographic;
+  scene.path = std::move(path);
   return scene;
 }
 
 ExportResult exportPicture(const ExportRequest& request, Progress& progress) {
   const fs::path file = exportFiles(request).front();
-  const render::SceneSpec scene = sceneOf(request);
-  const render::Recipe recipe = pictureRecipe(request.items);
-  if (request.format == ExportFormat::Still)
-    render::writePng(file, render::renderScene(scene, request.width, request.height), recipe);
+  const render::Recipe recipe = pictureRecipe(request);
+  // A folder that cannot be written is told of before minutes of drawing.
+  { const StagedFolder probe(request.folder); }
+  const render::VideoFormat format{
+      .width = request.width, .height = request.height, .fps = request.fps, .replaceLonger = true};
+  const bool still = request.format == ExportFormat::Still;
+  if (still && request.shot)
+    render::writePng(file,
+                     render::drawLive(*request.shot, request.stillS, request.width, request.height),
+                     recipe);
+  else if (still)
+    render::writePng(file, render::renderScene(figureOf(request), request.width, request.height),
+                     recipe);
+  else if (request.shot)
+    render::writeLiveVideo(file, *request.shot, format, recipe, progress);
   else
-    render::writeSceneVideo(file, scene,
-                            {.width = request.width, .height = request.height, .fps = request.fps},
+    render::writeSceneVideo(file, figureOf(request), format,
                             {.follow = request.follow, .trail = request.trail}, recipe, progress);
   return {.files = {file}, .fit = {}};
 }
@@ -112,8 +128,9 @@ ExportResult exportClips(const ExportRequest& request, Progress& progress) {
     progress.throwIfCancelled();
     io::WriteOptions options;
     options.recipe = item.recipe;
-    const auto written = io::writeClip(
-        *item.clip, staged.path() / (item.name + extensionOf(request.format)), options);
+    const auto written =
+        io::writeClip(*inRange(item.clip, request.range),
+                      staged.path() / (item.name + extensionOf(request.format)), options);
     for (const fs::path& file : written.files)
       out.files.push_back(request.folder / file.filename());
     if (written.fit) out.fit = out.fit ? pooled(*out.fit, *written.fit) : *written.fit;
@@ -162,16 +179,20 @@ std::vector<ExportItem> exportItems(const Experiment& experiment,
     const auto index = static_cast<size_t>(id.index);
     if (group == groups.end() || index >= group->motions.size()) continue;
     const Motion& motion = group->motions[index];
-    const ClipPtr clip = inRange(motion.clip, range);
-    if (!clip) continue;
+    if (range) {
+      const auto [first, last] = framesInside(*motion.clip, *range);
+      if (first >= last) continue;
+    }
     const std::string wanted = nameOf(*group, motion, id.index);
     std::string name = wanted;
     for (int n = 2; !names.insert(name).second; ++n) name = fmt::format("{}_{}", wanted, n);
-    out.push_back({.clip = clip,
+    out.push_back({.clip = motion.clip,
                    .name = name,
-                   .group = group->natural() ? group->name : group->system,
+                   .group = group->name,
+                   .legend = group->natural() ? group->name : group->system,
                    .colour = group->colour(),
                    .wanted = group->wanted,
+                   .origin = originOf(*group),
                    .recipe = recipeOf(hash, *group, id.index, range)});
   }
   return out;
@@ -188,30 +209,48 @@ std::vector<fs::path> exportFiles(const ExportRequest& request) {
   return out;
 }
 
-render::Recipe pictureRecipe(const std::vector<ExportItem>& items) {
-  render::Recipe out{{"marey", MAREY_VERSION}};
-  if (items.empty()) return out;
-  const Json& first = items.front().recipe;
-  out.emplace_back("experiment_hash", first.value("experiment_hash", ""));
-  if (first.contains("range_s")) out.emplace_back("range_s", jsonText(first["range_s"]));
-  std::map<std::string, std::vector<std::string>> names;
-  for (const ExportItem& item : items) {
-    const std::string group = item.recipe.value("group", item.group);
-    if (names[group].empty() && item.recipe.contains("recipe")) {
-      out.emplace_back("model_hash " + group, item.recipe.value("model_hash", ""));
-      out.emplace_back("seed " + group, jsonText(item.recipe["seed"]));
-      out.emplace_back("temperature " + group, jsonText(item.recipe["temperature"]));
+std::vector<fs::path> replacedFiles(const ExportRequest& request) {
+  std::vector<fs::path> out;
+  for (const fs::path& file : exportFiles(request)) {
+    std::error_code ec;
+    if (request.format != ExportFormat::PngFrames) {
+      if (fs::exists(file, ec)) out.push_back(file);
+      continue;
     }
-    names[group].push_back(item.name);
+    for (const auto& [number, frame] : render::framesThere(file)) out.push_back(frame);
   }
-  for (const auto& [group, list] : names)
-    out.emplace_back("motions " + group, fmt::format("{}", fmt::join(list, ", ")));
+  return out;
+}
+
+render::Recipe pictureRecipe(const ExportRequest& request) {
+  std::vector<RecipeSet> sets;
+  for (const ExportItem& item : request.items) {
+    const auto found = std::find_if(sets.begin(), sets.end(),
+                                    [&](const RecipeSet& set) { return set.name == item.group; });
+    // A natural motion is known by its file.
+    const std::string source = item.recipe.value("source", "");
+    const std::string name = source.empty() ? item.name : item.name + " from " + source;
+    if (found == sets.end())
+      sets.push_back({item.group, item.origin, name});
+    else
+      found->motions += ", " + name;
+  }
+  render::Recipe out = recipeOf(request.experimentHash, sets);
+  if (request.range)
+    out.emplace_back("range_s",
+                     fmt::format("{:g} to {:g}", request.range->beginS, request.range->endS));
+  if (!request.shot) return out;
+  Json scene = render::toJson(*request.shot);
+  scene.update(request.shotSettings);
+  if (request.format == ExportFormat::Still) scene["time_s"] = request.stillS;
+  out.emplace_back("scene", scene.dump());
   return out;
 }
 
 ExportResult exportMotions(const ExportRequest& request, Progress& progress) {
   if (request.items.empty())
-    throw InputError({.path = request.folder.string()}, "motions to export", "none");
+    throw InputError({.path = request.folder.string()},
+                     request.shot ? "motions that the 3D view shows" : "motions to export", "none");
   return isPicture(request.format) ? exportPicture(request, progress)
                                    : exportClips(request, progress);
 }

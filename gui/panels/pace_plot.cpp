@@ -3,6 +3,7 @@
 #include <QPainter>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/ticks.h"
 
@@ -81,6 +82,41 @@ void PacePlot::paintEvent(QPaintEvent* /*event*/) {
   if (m_time < 0.0 || m_time > shown.seconds) return;
   painter.setPen(QPen(inks.warning, 1.2));
   painter.drawLine(shown.at(m_time, shown.low), shown.at(m_time, shown.high));
+}
+
+render::ChartGrid PacePlot::chart() const {
+  if (m_values.size() < 2) return {};
+  const double seconds = frame().seconds;
+  render::Chart chart{.title = m_title.toStdString(),
+                      .x = {.label = tr("time").toStdString(), .unit = "s"}};
+  const auto band = [&](double low, double high, const QString& name, double opacity) {
+    chart.series.push_back({.kind = render::SeriesKind::Band,
+                            .name = name.toStdString(),
+                            .colour = render::grey(0.2),
+                            .x = {0.0, seconds},
+                            .low = {m_scale * low, m_scale * low},
+                            .high = {m_scale * high, m_scale * high},
+                            .opacity = opacity});
+  };
+  if (m_natural) {
+    band(m_natural->minimum, m_natural->maximum, tr("all natural motion"), 0.08);
+    band(m_natural->low, m_natural->high, tr("5 to 95 % of it"), 0.16);
+  }
+  render::Series line{.name = tr("path").toStdString(), .colour = render::colourOf(0)};
+  render::Series strained{
+      .name = tr("rare or unseen").toStdString(), .colour = render::colourOf(1), .width = 3.0};
+  bool any = false;
+  for (size_t i = 0; i < m_values.size(); ++i) {
+    const bool rare = m_natural && strainOf(m_values[i], *m_natural) != Strain::None;
+    any = any || rare;
+    for (render::Series* series : {&line, &strained})
+      series->x.push_back(static_cast<double>(i) / m_fps);
+    line.y.push_back(m_scale * m_values[i]);
+    strained.y.push_back(rare ? line.y.back() : std::numeric_limits<double>::quiet_NaN());
+  }
+  chart.series.push_back(std::move(line));
+  if (any) chart.series.push_back(std::move(strained));
+  return render::single(std::move(chart));
 }
 
 void PacePlot::paintBands(QPainter& painter, const Inks& inks, const Frame& frame) const {

@@ -8,6 +8,8 @@
 #include "panels/paint_style.h"
 #include "panels/path_curve.h"
 
+#include "render/chart.h"
+
 namespace marey::gui {
 
 class PacePlot : public QWidget {
@@ -19,6 +21,8 @@ class PacePlot : public QWidget {
   void setNatural(std::optional<Spread> natural);
   /// A line at this time; negative: none.
   void setTime(double seconds);
+  /// The curve and its bands as a chart; without charts where there is no curve.
+  render::ChartGrid chart() const;
   QSize sizeHint() const override { return {260, 110}; }
   QSize minimumSizeHint() const override { return {160, 84}; }
 

@@ -11,6 +11,7 @@
 #include "panels/path_list.h"
 #include "panels/path_view.h"
 #include "panels/way_point_form.h"
+#include "panels/workspace_chart.h"
 
 namespace marey::gui {
 namespace {
@@ -61,6 +62,9 @@ class PathPanel : public QWidget {
     m_speed = new PacePlot(QStringLiteral("pathSpeedPlot"), tr("Speed (m/s)"), 1.0, lower);
     m_turn = new PacePlot(QStringLiteral("pathTurnPlot"), tr("Turn rate (°/s)"),
                           180.0 / std::numbers::pi, lower);
+    for (PacePlot* plot : {m_speed, m_turn})
+      new ChartMenu(plot,
+                    chartOutOf(m_workspace, plot->objectName(), [plot] { return plot->chart(); }));
     layout->addWidget(m_speed, 1);
     layout->addWidget(m_turn, 1);
     return lower;

@@ -138,7 +138,7 @@ void PlotPanel::showContent() {
 
 void PlotPanel::showGrid(LinkedGrid grid) {
   m_curves = std::move(grid.motions);
-  m_chart->setRecipe(recipe());
+  m_chart->setRecipe(m_computed ? *m_computed : recipe());
   m_chart->setGrid(std::move(grid.grid));
   showHighlights();
   showContent();
@@ -216,12 +216,15 @@ void PlotPanel::run(const QString& title, Job::Work work, std::function<void()> 
     }
   };
   const QPointer<PlotPanel> self(this);
-  m_job = m_workspace.jobs().start(Lane::Files, title, guarded,
-                                   [self, version, error, take = std::move(take)] {
-                                     if (!self || self->m_version != version) return;
-                                     if (error->isEmpty()) return take();
-                                     self->showHint(*error);
-                                   });
+  m_job =
+      m_workspace.jobs().start(Lane::Files, title, guarded,
+                               [self, version, error, input = recipe(), take = std::move(take)] {
+                                 if (!self || self->m_version != version) return;
+                                 if (!error->isEmpty()) return self->showHint(*error);
+                                 self->m_computed = input;
+                                 take();
+                                 if (self) self->m_computed.reset();
+                               });
 }
 
 }  // namespace marey::gui

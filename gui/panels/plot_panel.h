@@ -101,8 +101,9 @@ class PlotPanel : public QWidget {
   bool m_stale = true;   ///< changed while hidden
   bool m_again = false;  ///< motions have changed while a plot of the earlier ones was worked out
   Inputs m_inputs;
-  int m_version = 0;  ///< of compute
-  int m_job = 0;      ///< 0: nothing is worked out
+  int m_version = 0;                         ///< of compute
+  std::optional<render::Recipe> m_computed;  ///< while a result is taken: the recipe of its input
+  int m_job = 0;                             ///< 0: nothing is worked out
 };
 
 }  // namespace marey::gui

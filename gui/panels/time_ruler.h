@@ -7,6 +7,8 @@
 #include "panels/gait_rows.h"
 #include "panels/paint_style.h"
 
+#include "render/chart.h"
+
 namespace marey::gui {
 
 /// Seconds to pixels, the same for all parts of the timeline.
@@ -59,6 +61,8 @@ class GaitView : public QWidget {
   void setRows(std::vector<GaitRow> rows, int leftOut);
   void setHint(const QString& hint);
   const std::vector<GaitRow>& rows() const { return m_rows; }
+  /// The rows as a chart; without charts where there are none.
+  render::ChartGrid chart() const;
 
  protected:
   void paintEvent(QPaintEvent* event) override;

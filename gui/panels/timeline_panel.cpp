@@ -15,6 +15,7 @@
 #include "panels/playback.h"
 #include "panels/time_ruler.h"
 #include "panels/transport_icons.h"
+#include "panels/workspace_chart.h"
 
 namespace marey::gui {
 namespace {
@@ -34,6 +35,8 @@ class TimelinePanel : public QWidget {
     m_ruler = new TimeRuler(workspace, this);
     layout->addWidget(m_ruler);
     m_gait = new GaitView(workspace, *m_ruler, this);
+    new ChartMenu(
+        m_gait, chartOutOf(workspace, QStringLiteral("gait"), [this] { return m_gait->chart(); }));
     auto* scroll = new QScrollArea(this);
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setWidgetResizable(true);

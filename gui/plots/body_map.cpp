@@ -132,6 +132,56 @@ void BodyMap::paintBar(QPainter& painter) const {
   painter.drawText(numbers, Qt::AlignRight, QString::number(most, 'g', 3));
 }
 
+render::ChartGrid BodyMap::chart() const {
+  if (!m_data.skeleton || m_data.pose.empty()) return {};
+  const View view = viewOf(m_data.pose);
+  const double most = highest();
+  // One scale for both axes: the body stands in a square.
+  const double half = 0.55 * std::max(view.width, view.height);
+  const double x = view.left + 0.5 * view.width, y = view.bottom + 0.5 * view.height;
+  render::Chart body{.x = {.label = "across", .unit = "m", .range = std::pair(x - half, x + half)},
+                     .y = {.label = "height", .unit = "m", .range = std::pair(y - half, y + half)},
+                     .legend = render::LegendPlace::None};
+  for (const auto& [parent, child] : m_data.skeleton->bones()) {
+    const QPointF a = view.flat(m_data.pose[static_cast<size_t>(parent)]);
+    const QPointF b = view.flat(m_data.pose[static_cast<size_t>(child)]);
+    body.series.push_back({.name = "bone",
+                           .colour = render::grey(0.7),
+                           .x = {a.x(), b.x()},
+                           .y = {a.y(), b.y()},
+                           .width = 2.5});
+  }
+  render::Chart values{.x = {.label = m_data.label.toStdString()},
+                       .legend = render::LegendPlace::None};
+  for (size_t j = 0; j < m_data.pose.size(); ++j) {
+    const double value =
+        j < m_data.values.size() ? m_data.values[j] : std::numeric_limits<double>::quiet_NaN();
+    const QColor ink = mapColour(most > 0.0 && std::isfinite(value) ? value / most : 0.0);
+    const render::Colour colour = std::isfinite(value)
+                                      ? render::Colour{ink.redF(), ink.greenF(), ink.blueF(), 1.0}
+                                      : render::grey(0.7);
+    const std::string& name = m_data.skeleton->names[j];
+    const QPointF at = view.flat(m_data.pose[j]);
+    body.series.push_back({.kind = render::SeriesKind::Dots,
+                           .name = name,
+                           .colour = colour,
+                           .x = {at.x()},
+                           .y = {at.y()}});
+    values.y.categories.push_back(name);
+    if (std::isfinite(value))
+      values.series.push_back({.kind = render::SeriesKind::Intervals,
+                               .name = name,
+                               .colour = colour,
+                               .y = {static_cast<double>(j) + 0.5},
+                               .low = {0.0},
+                               .high = {value},
+                               .width = 0.62});
+  }
+  render::ChartGrid grid{.charts = {std::move(body)}, .columns = 2};
+  if (!values.series.empty()) grid.charts.push_back(std::move(values));
+  return grid;
+}
+
 int BodyMap::jointAt(const QPoint& at) const {
   int nearest = -1;
   double least = 14.0;

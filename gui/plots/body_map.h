@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "motion/clip.h"
+#include "render/chart.h"
 
 namespace marey::gui {
 
@@ -26,6 +27,8 @@ class BodyMap : public QWidget {
   void setJoint(std::optional<int> joint);
   /// Where a joint is drawn.
   QPointF placeOf(int joint) const;
+  /// The body, and beside it the value of every joint; without charts where there is no body.
+  render::ChartGrid chart() const;
   QSize sizeHint() const override { return {190, 260}; }
   QSize minimumSizeHint() const override { return {130, 160}; }
 

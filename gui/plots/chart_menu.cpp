@@ -5,10 +5,8 @@
 #include <QMenu>
 
 #include "plots/chart_files.h"
+#include "plots/chart_out.h"
 #include "plots/chart_view.h"
-#include "shell/file_dialogs.h"
-
-#include "base/error.h"
 
 namespace marey::gui {
 
@@ -31,28 +29,13 @@ void ChartView::copyPicture() const {
   QApplication::clipboard()->setImage(view.copy());
 }
 
-void ChartView::saveWithDialog(const QString& ending) {
-  const QString file = askSaveFile(this, tr("Save chart"), m_fileStem + "." + ending,
-                                   tr("%1 (*.%2)").arg(ending.toUpper(), ending), ending);
-  if (file.isEmpty()) return;
-  try {
-    saveAs(file);
-  } catch (const Error& error) {
-    Q_EMIT saveFailed(QString::fromStdString(error.what()));
-  }
-}
-
 void ChartView::contextMenuEvent(QContextMenuEvent* event) {
   if (!drawable()) return;
   QMenu menu;
   menu.setObjectName(QStringLiteral("chartMenu"));
-  for (const char* ending : {"svg", "pdf", "png", "csv"}) {
-    const QString name = QString::fromLatin1(ending);
-    const QString text =
-        name == "csv" ? tr("Save data as CSV...") : tr("Save as %1...").arg(name.toUpper());
-    menu.addAction(text, this, [this, name] { saveWithDialog(name); })
-        ->setObjectName("chartSave_" + name);
-  }
+  addSaveActions(
+      menu, *this, m_fileStem, [this](const QString& file) { saveAs(file); },
+      [this](const QString& error) { Q_EMIT saveFailed(error); });
   menu.addSeparator();
   menu.addAction(tr("Copy picture"), this, [this] { copyPicture(); })
       ->setObjectName(QStringLiteral("chartCopy"));

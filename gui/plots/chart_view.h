@@ -88,7 +88,6 @@ class ChartView : public QWidget {
   void finishDrag();
   /// The time axis is one for all charts; else only the zoomed chart changes.
   bool zoomsChart(size_t chart) const;
-  void saveWithDialog(const QString& ending);
   // chart_paint.cpp
   void paintRange(QPainter& painter) const;
   void paintHighlights(QPainter& painter) const;

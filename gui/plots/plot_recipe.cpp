@@ -3,25 +3,26 @@
 #include "plots/motion_sets.h"
 #include <fmt/format.h>
 
+#include "experiment/recipe.h"
+
 namespace marey::gui {
 
 render::Recipe plotRecipe(const std::string& plot, const Experiment& experiment,
                           const std::vector<MotionGroup>& groups,
                           const std::optional<TimeRange>& range) {
-  render::Recipe out{
-      {"marey", MAREY_VERSION}, {"plot", plot}, {"experiment", experimentHash(experiment)}};
-  if (range)
-    out.emplace_back("range_s", fmt::format("{:.4g} to {:.4g}", range->beginS, range->endS));
+  std::vector<RecipeSet> sets;
   for (const MotionSet& set : motionSets(groups)) {
-    out.emplace_back("motions " + set.name, std::to_string(set.clips.size()));
-    for (const MotionGroup& group : groups) {
-      if (group.id != set.group || !group.recipe) continue;
-      out.emplace_back("model " + set.name, group.modelHash);
-      out.emplace_back("seed " + set.name, std::to_string(group.recipe->seed));
-      out.emplace_back("temperature " + set.name,
-                       fmt::format("{}", group.recipe->system.temperature));
-    }
+    RecipeSet entry{set.name, {}, std::to_string(set.clips.size())};
+    for (const MotionGroup& group : groups)
+      if (group.id == set.group && group.recipe)
+        entry.origin =
+            SampleOrigin{group.modelHash, group.recipe->seed, group.recipe->system.temperature};
+    sets.push_back(std::move(entry));
   }
+  render::Recipe out = recipeOf(experimentHash(experiment), sets);
+  out.emplace_back("plot", plot);
+  out.emplace_back("natural", fmt::format("{}", fmt::join(experiment.natural, ", ")));
+  if (range) out.emplace_back("range_s", fmt::format("{:g} to {:g}", range->beginS, range->endS));
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include "families.h"
 #include "shell/file_dialogs.h"
 #include "shell/main_window.h"
+#include "shell/opened_files.h"
 
 #include "base/error.h"
 #include "experiment/edits.h"
@@ -134,16 +135,27 @@ void MainWindow::addModels() {
 }
 
 void MainWindow::openFiles(const QStringList& files) {
-  std::vector<std::string> motions, models;
-  for (const QString& given : files) {
-    // Whole, since the document may be saved elsewhere.
-    const QString file = QFileInfo(given).absoluteFilePath();
-    if (file.endsWith(QStringLiteral(".json"))) return open(file);
-    if (file.endsWith(QStringLiteral(".marey")))
-      models.push_back(file.toStdString());
-    else
-      motions.push_back(file.toStdString());
+  std::vector<std::string> given;
+  // Whole, since the document may be saved elsewhere.
+  for (const QString& file : files)
+    given.push_back(QFileInfo(file).absoluteFilePath().toStdString());
+  const auto [documents, paths, models, motions] = sortOpened(given);
+  if (documents.size() > 1)
+    showError(tr("Opening files"), tr("Only one document can be open at a time; %1 is opened.")
+                                       .arg(QString::fromStdString(documents.front())));
+  if (!documents.empty()) {
+    const QString document = QString::fromStdString(documents.front());
+    open(document);
+    // Not opened: what came with it has no place in another document.
+    if (m_workspace.file() != document) return;
   }
+  for (const std::string& file : paths)
+    m_workspace.edit(tr("Add path"), [&](Experiment& e) {
+      addPath(e, {.name = std::filesystem::path(file).stem().string(),
+                  .path = {},
+                  .wayPoints = readPathFile(file),
+                  .seconds = 0.0});
+    });
   if (!models.empty()) addModelFiles(models);
   if (!motions.empty() && m_importer) {
     QStringList names;

@@ -219,6 +219,24 @@ TEST_F(Video, FramesOfALongerVideoAreNotMixedWithThese) {
   EXPECT_TRUE(fs::exists(m_folder / "3.png"));
 }
 
+TEST_F(Video, FramesOfALongerVideoGoAwayWhereTheyAreToBeReplaced) {
+  const fs::path name = m_folder / "f_{frame:02}.png";
+  const auto write = [&](int count, bool replace) {
+    VideoWriter writer(name, {.width = 64, .height = 48, .replaceLonger = replace});
+    for (int k = 0; k < count; ++k) writer.add(greyFrame(0.1));
+    writer.finish();
+  };
+  write(5, false);
+  for (const char* other : {"f_7.png", "f_007.png", "f_0a.png", "g_07.png", "f_07.txt"})
+    writeFileAtomically(m_folder / other, "not of this video");
+  EXPECT_EQ(framesThere(name).size(), 5U);
+  write(2, true);
+  EXPECT_EQ(framesThere(name).size(), 2U);
+  EXPECT_EQ(framesThere(name).rbegin()->first, 1);
+  EXPECT_TRUE(fs::exists(m_folder / "f_007.png"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(m_folder), fs::directory_iterator()), 7);
+}
+
 TEST_F(Video, TheNameSaysTheKind) {
   EXPECT_EQ(videoKind("a.mp4"), VideoKind::Mp4);
   EXPECT_EQ(videoKind("a.webm"), VideoKind::WebM);

@@ -165,6 +165,33 @@ TEST(StagedFolderOfFiles, ReplacesFilesOfTheSameNameAndKeepsOthers) {
   EXPECT_EQ(slurp(folder / "out/sub/added.txt"), "added");
 }
 
+TEST(StagedFolderOfFiles, StagesInsideATargetThatIsThere) {
+  const TempFolder folder;
+  fs::create_directory(folder / "home");
+  {
+    StagedFolder staged(folder / "home");
+    // The parent may be closed to the user, or another file system.
+    EXPECT_EQ(staged.path().parent_path(), folder / "home");
+    writeFileAtomically(staged.path() / "a.txt", "a");
+    staged.commit();
+  }
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"home", "home/a.txt"}));
+}
+
+TEST(StagedFolderOfFiles, MovesNothingWhereOneFileHasNoPlace) {
+  const TempFolder folder;
+  writeFileAtomically(folder / "out/a.txt", "old");
+  fs::create_directory(folder / "out/b.txt");
+  {
+    StagedFolder staged(folder / "out");
+    writeFileAtomically(staged.path() / "a.txt", "new");
+    writeFileAtomically(staged.path() / "b.txt", "new");
+    EXPECT_NE(messageOf<FileError>([&] { staged.commit(); }).find("b.txt"), std::string::npos);
+  }
+  EXPECT_EQ(slurp(folder / "out/a.txt"), "old");
+  EXPECT_EQ(folder.names().size(), 3U);
+}
+
 TEST(StagedFolderOfFiles, RefusesAFileAsTargetBeforeAnyWork) {
   const TempFolder folder;
   writeFileAtomically(folder / "out", "a file");

@@ -2,8 +2,10 @@
 #include "panels/import_files.h"
 #include "panels/motion_export.h"
 #include "panels/training_run.h"
+#include "shell/opened_files.h"
 #include <gtest/gtest.h>
 
+#include "base/archive.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/clip_io.h"
@@ -29,8 +31,10 @@ class PanelFiles : public ::testing::Test {
     group.colourIndex = 0;
     group.recipe = recipe;
     group.modelHash = "abc";
-    for (WalkerClip& walk : walkerDataSet(2, 1.0, 5))
+    for (WalkerClip& walk : walkerDataSet(2, 1.0, 5)) {
+      walk.clip.transforms.reset();  // models give positions only
       group.motions.push_back({std::make_shared<const Clip>(std::move(walk.clip)), {}, true});
+    }
     m_groups = {group};
   }
   void TearDown() override { fs::remove_all(m_folder); }
@@ -72,7 +76,13 @@ TEST_F(PanelFiles, ExportedClipsCarryTheirRecipeAndTheResidualOfTheirFit) {
         format == ExportFormat::Bvh || format == ExportFormat::Gltf || format == ExportFormat::Glb;
     EXPECT_EQ(result.fit.has_value(), fitted);
     std::string all;
-    for (const fs::path& file : result.files) all += readFile(file);
+    for (const fs::path& file : result.files) {
+      if (file.extension() == ".npz")
+        for (const auto& [name, content] : readArchive(file)) all += content;
+      else
+        all += readFile(file);
+    }
+    std::erase(all, '\0');  // NumPy has four bytes per character
     for (const char* key : {"experiment_hash", "model_hash", "seed", "temperature", "marey"})
       EXPECT_NE(all.find(key), std::string::npos) << key;
   }
@@ -110,6 +120,66 @@ TEST_F(PanelFiles, OnlyOverriddenFilesAreConverted) {
   EXPECT_EQ(sources[1], files[1].path);
   const Clip asFound = io::readClip(files[0].path), converted = io::readClip(sources[0]);
   EXPECT_NEAR(converted.at(0, 0).y(), 100.0F * asFound.at(0, 0).y(), 0.1F);
+}
+
+TEST_F(PanelFiles, ContentDecidesWhatAFileIsAndNoneIsDropped) {
+  const auto file = [this](const char* name) { return (m_folder / name).string(); };
+  writeFileAtomically(file("path.json"), R"({"waypoints": [{"x": 0, "z": 0}, {"x": 0, "z": 2}]})");
+  writeFileAtomically(file("document.json"), R"({"natural": ["walker:1,2,3"]})");
+  writeFileAtomically(file("broken.json"), "{");
+  const OpenedFiles sorted = sortOpened({file("path.json"), file("document.json"), file("a.bvh"),
+                                         file("b.marey"), file("broken.json"), file("folder")});
+  EXPECT_EQ(sorted.paths, std::vector<std::string>{file("path.json")});
+  EXPECT_EQ(sorted.documents,
+            (std::vector<std::string>{file("document.json"), file("broken.json")}));
+  EXPECT_EQ(sorted.models, std::vector<std::string>{file("b.marey")});
+  EXPECT_EQ(sorted.motions, (std::vector<std::string>{file("a.bvh"), file("folder")}));
+}
+
+TEST_F(PanelFiles, AMotionOfTheRangeIsCutOnlyWhenItIsWritten) {
+  const TimeRange range{0.2, 0.5};
+  ExportRequest part = request(ExportFormat::Npz);
+  part.items = exportItems({}, m_groups, {{4, 0}, {4, 1}}, range);
+  part.range = range;
+  EXPECT_EQ(part.items.front().clip, m_groups.front().motions.front().clip);
+  Progress progress;
+  const auto files = exportMotions(part, progress).files;
+  const Clip written = io::readClip(files.front());
+  const double fps = written.fps;
+  EXPECT_EQ(written.frameCount(),
+            static_cast<int>(0.5 * fps + 1e-9) - static_cast<int>(std::ceil(0.2 * fps - 1e-9)) + 1);
+  EXPECT_TRUE(exportItems({}, m_groups, {{4, 0}}, TimeRange{50.0, 60.0}).empty());
+}
+
+TEST_F(PanelFiles, ALiveShotIsWrittenWithItsSettings) {
+  ExportRequest live = request(ExportFormat::PngFrames);
+  render::LiveShot shot;
+  for (const ExportItem& item : live.items)
+    shot.motions.push_back({.clip = item.clip, .colour = item.colour});
+  shot.view = render::LiveView::Front;
+  live.shot = shot;
+  live.shotSettings = {{"colour_by", "speed"}};
+  Progress progress;
+  exportMotions(live, progress);
+  EXPECT_EQ(replacedFiles(live).size(), 10U) << "1 s at 10 fps";
+  const std::string recipe =
+      render::pngRecipe(readFile(m_folder / "motions_0003.png"), "motions_0003.png");
+  EXPECT_NE(recipe.find("colour_by"), std::string::npos) << recipe;
+  EXPECT_NE(recipe.find("front"), std::string::npos) << recipe;
+  live.fps = 5.0;
+  exportMotions(live, progress);
+  EXPECT_EQ(replacedFiles(live).size(), 5U) << "the rest of the longer one went";
+}
+
+TEST_F(PanelFiles, AnUnreadableFileIsNotTakenWhateverTheTick) {
+  ImportFile file{.path = "a.bvh"};
+  EXPECT_TRUE(file.taken());
+  io::DoctorReport report;
+  report.faults.push_back({"unreadable", io::Severity::Error, "why", {}});
+  file.reports = {report};
+  EXPECT_FALSE(file.taken());
+  file.reports = {io::DoctorReport{}};
+  EXPECT_TRUE(file.taken()) << "read otherwise, it is readable again";
 }
 
 TEST_F(PanelFiles, ATrainingRunIsReadFromItsFolder) {

@@ -73,6 +73,17 @@ TEST(AsfAmc, TurnsAreConjugatedByTheBonesAxisAndAppliedInTheOrderListed) {
   EXPECT_EQ(clip.source.eulerOrders, (std::vector<std::string>{"ZYX", "", "ZYX", "X"}));
 }
 
+TEST(AsfAmc, AGivenEulerOrderReplacesThatOfTheSkeleton) {
+  const Clip clip = parseAmc(kAmc, "a.amc", parseAsf(kAsf, "a.asf"), {.eulerOrder = "XZY"});
+  const Eigen::Matrix3d root = turn(0, 10) * turn(2, 30) * turn(1, 20);
+  const Eigen::Matrix3d axis = turn(2, 20);
+  const Eigen::Matrix3d thigh =
+      root * axis * turn(0, 40) * turn(2, 60) * turn(1, 50) * axis.transpose();
+  const Vec3d knee = Vec3d(1, 2, 3) * kUnitM + thigh * Vec3d(0, -8 * kUnitM, 0);
+  EXPECT_LT((clip.at(1, 3).cast<double>() - knee).norm(), 1e-6);
+  EXPECT_EQ(clip.source.eulerOrders, (std::vector<std::string>{"XZY", "", "XZY", "X"}));
+}
+
 TEST(AsfAmc, RadiansAndOtherLengthUnitsAreHonoured) {
   const std::string radians =
       ":FULLY-SPECIFIED\n:RADIANS\n1\nroot 1 2 3 0.1745329252 0.3490658504 0.5235987756\n"

@@ -69,6 +69,27 @@ TEST(BvhReader, ChannelsTurnInTheirOwnOrderPerJointAndPositionsReplaceOffsets) {
   EXPECT_EQ(clip.source.eulerOrders, (std::vector<std::string>{"ZXY", "YZX", "XYZ"}));
 }
 
+TEST(BvhReader, AGivenEulerOrderReplacesThatOfTheFileAndValuesKeepTheirAxes) {
+  const Clip clip = parse(kSmall, {.unit = "m", .eulerOrder = "yxz"});
+  const Eigen::Matrix3d hips = turn(1, 30) * turn(0, 20) * turn(2, 10);
+  const Eigen::Matrix3d arm = hips * turn(1, 40) * turn(0, 60) * turn(2, 50);
+  const Vec3d armAt = Vec3d(4, 5, 6) + hips * Vec3d(0, 1, 0);
+  const Vec3d handAt = armAt + arm * Vec3d(0.3, 0.2, 0.1);
+  EXPECT_LT((clip.at(1, 1).cast<double>() - armAt).norm(), 1e-5);
+  EXPECT_LT((clip.at(1, 2).cast<double>() - handAt).norm(), 1e-5);
+  EXPECT_EQ(clip.source.eulerOrders, (std::vector<std::string>{"YXZ", "YXZ", "YXZ"}));
+  EXPECT_TRUE(hasNote(clip, "as given"));
+}
+
+TEST(BvhReader, AJointThatTurnsTwiceAboutOneAxisKeepsItsOrder) {
+  const std::string twice =
+      with(kSmall, "3 Yrotation Zrotation Xrotation", "3 Zrotation Xrotation Zrotation");
+  EXPECT_EQ(parse(twice, {.unit = "m", .eulerOrder = "YXZ"}).source.eulerOrders,
+            (std::vector<std::string>{"YXZ", "ZXZ", "YXZ"}));
+  for (const char* wrong : {"XY", "XYX", "XYZZ", "abc"})
+    EXPECT_THROW(parse(kSmall, {.unit = "m", .eulerOrder = wrong}), UsageError) << wrong;
+}
+
 TEST(BvhReader, LineEndsTabsCaseAndAMissingLastNewlineDoNotMatter) {
   std::string odd;
   for (const char c : with(kSmall, "End Site", "End site")) {

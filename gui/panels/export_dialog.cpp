@@ -332,7 +332,7 @@ void saveScenePicture(Workspace& workspace, QWidget* parent) {
                         .height = static_cast<int>(ratio * view->height())};
   copyScene(*view, request, false);
   workspace.jobs().start(
-      Lane::Files, QObject::tr("Picture of the 3D view"), [request, path](Progress&) {
+      Lane::Exports, QObject::tr("Picture of the 3D view"), [request, path](Progress&) {
         render::writePng(
             path, render::drawLive(*request.shot, request.stillS, request.width, request.height),
             pictureRecipe(request));

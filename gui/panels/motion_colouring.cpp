@@ -26,7 +26,7 @@ const MotionColours& MotionColouring::of(const std::vector<ColourSource>& source
   const auto result = std::make_shared<MotionColours>();
   const QPointer<MotionColouring> self(this);
   m_job = m_workspace.jobs().start(
-      Lane::Files, tr("Colouring motions"),
+      Lane::Previews, tr("Colouring motions"),
       [from = std::move(from), by, modelFps, result](Progress& progress) {
         *result = coloursByValue(from, by, modelFps, progress);
       },

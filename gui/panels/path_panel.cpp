@@ -2,6 +2,7 @@
 
 #include <QAction>
 #include <QLabel>
+#include <QScrollArea>
 #include <QSplitter>
 #include <QVBoxLayout>
 #include <numbers>
@@ -15,6 +16,8 @@
 
 namespace marey::gui {
 namespace {
+
+constexpr int kLeastPlotHeight = 96;
 
 class PathPanel : public QWidget {
  public:
@@ -33,11 +36,12 @@ class PathPanel : public QWidget {
     m_problem->setWordWrap(true);
     layout->addWidget(m_problem);
     m_view = new PathView(workspace, *m_path, this);
-    auto* splitter = new QSplitter(Qt::Vertical, this);
+    // Side by side: docks are wide rather than high.
+    auto* splitter = new QSplitter(Qt::Horizontal, this);
     splitter->setChildrenCollapsible(false);
     splitter->addWidget(m_view);
-    splitter->addWidget(buildLower());
-    splitter->setStretchFactor(0, 1);
+    splitter->addWidget(buildNumbers());
+    splitter->setSizes({1, 1});
     layout->addWidget(splitter, 1);
     addKeys();
     connect(m_path, &CurrentPath::changed, this, [this] { refresh(); });
@@ -53,10 +57,11 @@ class PathPanel : public QWidget {
   }
 
  private:
-  QWidget* buildLower() {
+  /// The chosen way-point and the plots; a low dock scrolls them.
+  QWidget* buildNumbers() {
     auto* lower = new QWidget(this);
     auto* layout = new QVBoxLayout(lower);
-    layout->setContentsMargins(0, kSpacing, 0, 0);
+    layout->setContentsMargins(kSpacing, 0, 0, 0);
     layout->setSpacing(kSpacing);
     layout->addWidget(new WayPointForm(*m_path, *m_view, lower));
     m_speed = new PacePlot(QStringLiteral("pathSpeedPlot"), tr("Speed (m/s)"), 1.0, lower);
@@ -67,7 +72,12 @@ class PathPanel : public QWidget {
                     chartOutOf(m_workspace, plot->objectName(), [plot] { return plot->chart(); }));
     layout->addWidget(m_speed, 1);
     layout->addWidget(m_turn, 1);
-    return lower;
+    for (PacePlot* plot : {m_speed, m_turn}) plot->setMinimumHeight(kLeastPlotHeight);
+    auto* scroll = new QScrollArea(this);
+    scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setWidgetResizable(true);
+    scroll->setWidget(lower);
+    return scroll;
   }
 
   void addKeys() {

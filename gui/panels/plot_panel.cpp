@@ -217,7 +217,7 @@ void PlotPanel::run(const QString& title, Job::Work work, std::function<void()> 
   };
   const QPointer<PlotPanel> self(this);
   m_job =
-      m_workspace.jobs().start(Lane::Files, title, guarded,
+      m_workspace.jobs().start(Lane::Previews, title, guarded,
                                [self, version, error, input = recipe(), take = std::move(take)] {
                                  if (!self || self->m_version != version) return;
                                  if (!error->isEmpty()) return self->showHint(*error);

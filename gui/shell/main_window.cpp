@@ -88,9 +88,9 @@ void MainWindow::buildDocks(const std::vector<PanelSpec>& panels) {
   const auto size = [&](PanelArea area, const QList<int>& sizes) {
     if (areas.contains(area)) m_docks->setSplitterSizes(areas[area], sizes);
   };
-  size(PanelArea::Centre, {280, 680, 540});
-  size(PanelArea::Plots, {330, 350});
-  size(PanelArea::Bottom, {640, 230});
+  size(PanelArea::Centre, {270, 670, 560});
+  size(PanelArea::Plots, {400, 300});
+  size(PanelArea::Bottom, {690, 190});
   m_firstLayout = m_docks->saveState();
 }
 

@@ -27,26 +27,38 @@ class Screenshots : public WindowTest {
     m_workspace->setTime(2.0);
   }
 
-  void take(Theme theme, const char* panel, const char* name) {
+  /// With these panels in front.
+  void take(Theme theme, const std::vector<const char*>& panels, const char* name) {
     m_window->setTheme(theme);
-    m_window->showPanel(QString::fromLatin1(panel));
+    for (const char* panel : panels) m_window->showPanel(QString::fromLatin1(panel));
     settle(500);
     ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
     settle(700);
     expectLikeBaseline(pictureOf(*m_window), name, kLeastSsim);
+    EXPECT_TRUE(m_errors.empty()) << m_errors.front();
   }
 };
 
-TEST_F(Screenshots, LightWithThePath) {
-  take(Theme::Light, "path", "window-light");
+TEST_F(Screenshots, LightWithTheLikelihood) {
+  take(Theme::Light, {"sampling", "likelihood"}, "window-light");
 }
 
-TEST_F(Screenshots, DarkWithTheLikelihood) {
-  take(Theme::Dark, "likelihood", "window-dark");
+TEST_F(Screenshots, DarkWithFootsteps) {
+  take(Theme::Dark, {"sampling", "footsteps"}, "window-dark");
 }
 
-TEST_F(Screenshots, Distributions) {
-  take(Theme::Light, "distributions", "window-distributions");
+TEST_F(Screenshots, PathAndDistributions) {
+  take(Theme::Light, {"path", "distributions"}, "window-path");
+}
+
+TEST_F(Screenshots, SelectionInStatisticsAndDiversity) {
+  const MotionGroup& samples = m_workspace->groups().back();
+  m_workspace->select({.motions = {{samples.id, 1}}});
+  take(Theme::Light, {"history", "diversity"}, "window-selection");
+}
+
+TEST_F(Screenshots, Statistics) {
+  take(Theme::Light, {"library", "statistics"}, "window-statistics");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ namespace marey::gui {
 namespace {
 
 constexpr int kLeastPlotHeight = 96;
+constexpr int kRoomForBar = 16;
 
 class PathPanel : public QWidget {
  public:
@@ -41,7 +42,7 @@ class PathPanel : public QWidget {
     splitter->setChildrenCollapsible(false);
     splitter->addWidget(m_view);
     splitter->addWidget(buildNumbers());
-    splitter->setSizes({1, 1});
+    splitter->setStretchFactor(0, 1);
     layout->addWidget(splitter, 1);
     addKeys();
     connect(m_path, &CurrentPath::changed, this, [this] { refresh(); });
@@ -77,6 +78,8 @@ class PathPanel : public QWidget {
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setWidgetResizable(true);
     scroll->setWidget(lower);
+    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    scroll->setMinimumWidth(lower->minimumSizeHint().width() + kRoomForBar);
     return scroll;
   }
 

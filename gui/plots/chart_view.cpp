@@ -38,6 +38,7 @@ ChartView::ChartView(QWidget* parent) : QWidget(parent) {
 void ChartView::setGrid(render::ChartGrid grid) {
   m_grid = std::move(grid);
   m_highlights.clear();
+  m_lit = {};
   if (m_zoomChart >= static_cast<int>(m_grid.charts.size())) m_zoom.reset();
   invalidate();
 }
@@ -56,6 +57,7 @@ void ChartView::setRange(std::optional<ChartSpan> range) {
 
 void ChartView::setHighlights(std::vector<ChartHighlight> highlights) {
   m_highlights = std::move(highlights);
+  m_lit = {};
   update();
 }
 
@@ -91,6 +93,7 @@ void ChartView::draw() const {
   m_valid = true;
   m_frames.clear();
   m_picture = {};
+  m_lit = {};
   if (!drawable()) return;
   m_shown = shownGrid();
   const render::ChartSize size{static_cast<double>(width()), static_cast<double>(height())};

@@ -90,7 +90,7 @@ class ChartView : public QWidget {
   bool zoomsChart(size_t chart) const;
   // chart_paint.cpp
   void paintRange(QPainter& painter) const;
-  void paintHighlights(QPainter& painter) const;
+  void drawHighlights() const;
   void paintCursor(QPainter& painter) const;
   void paintHover(QPainter& painter) const;
   QString hoverText(const ChartHit& hit) const;
@@ -109,6 +109,7 @@ class ChartView : public QWidget {
   // Drawn on demand, kept until data, size, zoom or palette change.
   mutable bool m_valid = false;
   mutable QImage m_picture;
+  mutable QImage m_lit;  ///< the highlights alone, as large as the picture
   mutable render::ChartGrid m_shown;
   mutable std::vector<render::ChartFrame> m_frames;
 };

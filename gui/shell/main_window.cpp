@@ -90,7 +90,7 @@ void MainWindow::buildDocks(const std::vector<PanelSpec>& panels) {
   };
   size(PanelArea::Centre, {270, 670, 560});
   size(PanelArea::Plots, {400, 300});
-  size(PanelArea::Bottom, {690, 190});
+  size(PanelArea::Bottom, {665, 215});
   m_firstLayout = m_docks->saveState();
 }
 

@@ -1,41 +1,76 @@
 // marey-workbench: the window.
-#include <QApplication>
+#include <QCommandLineParser>
 #include <QSurfaceFormat>
 #include <QTimer>
+#include <cstdio>
 
 #include "panels/commands.h"
 #include "panels/panels.h"
+#include "shell/application.h"
 #include "shell/main_window.h"
 #include <QVTKOpenGLNativeWidget.h>
 
-#include "base/error.h"
 #include "nn/threads.h"
 
-int main(int argc, char** argv) {
-  using namespace marey::gui;
+namespace marey::gui {
+namespace {
+
+constexpr int kWrongUsage = 2;
+
+void describe(QCommandLineParser& parser) {
+  parser.setApplicationDescription(
+      QObject::tr("A workbench for generative models of motion. Without files it opens the demo.\n"
+                  "\n"
+                  "Example: marey-workbench walk.marey clips/*.bvh"));
+  parser.addHelpOption();
+  parser.addVersionOption();
+  parser.addPositionalArgument(
+      QStringLiteral("files"),
+      QObject::tr("An experiment (.json), or models (.marey) and motion files for a new one."),
+      QStringLiteral("[files...]"));
+}
+
+/// Help and version need no display. They end the program.
+void answerQuestions(int argc, char** argv) {
+  const QCoreApplication application(argc, argv);
+  QCommandLineParser parser;
+  describe(parser);
+  parser.parse(QCoreApplication::arguments());
+  if (parser.isSet(QStringLiteral("help"))) parser.showHelp();
+  if (parser.isSet(QStringLiteral("version"))) parser.showVersion();
+}
+
+int run(int argc, char** argv) {
   QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
   format.setSamples(0);
   QSurfaceFormat::setDefaultFormat(format);
-  QApplication application(argc, argv);
-  QApplication::setOrganizationName(QStringLiteral("Marey"));
-  QApplication::setApplicationName(QStringLiteral("Marey"));
-  QApplication::setApplicationVersion(QStringLiteral(MAREY_VERSION));
-  marey::nn::configureThreads(0, true);
+  Application application(argc, argv);
+  QCommandLineParser parser;
+  describe(parser);
+  if (!parser.parse(QApplication::arguments())) {
+    std::fprintf(stderr, "%s\n", qPrintable(parser.errorText()));
+    return kWrongUsage;
+  }
+  nn::configureThreads(0, true);
   JobQueue jobs;
   Workspace workspace(jobs, {});
   MainWindow window(workspace, panels());
   addPanelCommands(window, workspace);
-  window.show();
-  QStringList files = QApplication::arguments().mid(1);
-  QTimer::singleShot(0, &window, [&] {
-    window.offerRecovery();
-    if (workspace.modified()) return;
-    try {
-      workspace.open(demoDocument(), {});
-    } catch (const marey::Error& error) {
-      workspace.report(QObject::tr("Opening the demo"), QString::fromStdString(error.what()));
-    }
-    if (!files.isEmpty()) window.openFiles(files);
+  QObject::connect(&application, &Application::failed, &workspace, [&](const QString& error) {
+    workspace.report(QObject::tr("The last command"), error);
   });
+  window.show();
+  QTimer::singleShot(0, &window, [&] { window.start(parser.positionalArguments()); });
   return QApplication::exec();
+}
+
+}  // namespace
+}  // namespace marey::gui
+
+int main(int argc, char** argv) {
+  QCoreApplication::setOrganizationName(QStringLiteral("Marey"));
+  QCoreApplication::setApplicationName(QStringLiteral("Marey"));
+  QCoreApplication::setApplicationVersion(QStringLiteral(MAREY_VERSION));
+  marey::gui::answerQuestions(argc, argv);
+  return marey::gui::run(argc, argv);
 }

@@ -41,9 +41,14 @@ ExperimentPath pathFromJson(const Json& value, const std::string& origin,
     out.path = reader.required<std::string>("path");
     out.seconds = reader.optional("seconds", out.seconds);
   }
+  const auto start = reader.optional<std::string>("start", "mean");
   reader.finish();
-  if (out.wayPoints.empty() || out.seconds != 0.0)
-    requireAtLeast(reader, "seconds", out.seconds, 0.2);
+  if (start != "mean" && start != "clip")
+    throw InputError(reader.place("start"), "'mean' or 'clip'", "'" + start + "'");
+  out.startFromClip = start == "clip";
+  if (out.startFromClip && !out.followsClip())
+    throw InputError(reader.place("start"), "'mean' for a path that is no clip:FILE", "'clip'");
+  if (out.seconds != 0.0) requireAtLeast(reader, "seconds", out.seconds, kShortestPathS);
   return out;
 }
 
@@ -81,8 +86,6 @@ Experiment experimentFromJson(const Json& value, const std::string& origin) {
   out.feet = reader.optional("feet", out.feet);
   out.toleranceStepCmS = reader.optional("tolerance_step_cm_s", out.toleranceStepCmS);
   reader.finish();
-  if (out.natural.empty())
-    throw InputError(reader.place("natural"), "at least one source of clips", "none");
   requireAtLeast(reader, "samples", out.samples, 1);
   requireAtLeast(reader, "held_out_samples", out.heldOutSamples, 0);
   requireAtLeast(reader, "fps", out.fps, 1.0);
@@ -92,7 +95,10 @@ Experiment experimentFromJson(const Json& value, const std::string& origin) {
 
 Experiment readExperiment(const std::filesystem::path& path) {
   Experiment out = experimentFromJson(readJson(path), path.string());
-  out.folder = path.parent_path();
+  // Whole, so that names keep their meaning where the working folder changes.
+  std::error_code none;
+  const auto whole = std::filesystem::absolute(path, none);
+  out.folder = (none ? path : whole).parent_path();
   return out;
 }
 
@@ -104,6 +110,7 @@ Json toJson(const Experiment& e) {
     Json one = p.wayPoints.empty() ? Json{{"path", p.path}} : toJson(p.wayPoints);
     one["name"] = p.name;
     one["seconds"] = p.seconds;
+    if (p.startFromClip) one["start"] = "clip";
     paths.push_back(one);
   }
   return {{"title", e.title},
@@ -124,7 +131,7 @@ void writeExperiment(const std::filesystem::path& path, const Experiment& experi
 }
 
 std::string experimentHash(const Experiment& experiment) {
-  return contentHash(toJson(experiment).dump());
+  return contentHash(jsonText(toJson(experiment)));
 }
 
 }  // namespace marey

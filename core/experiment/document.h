@@ -19,18 +19,25 @@ struct ExperimentSystem {
   bool operator==(const ExperimentSystem&) const = default;
 };
 
+/// Shorter paths hold no motion to speak of.
+inline constexpr double kShortestPathS = 0.2;
+
 struct ExperimentPath {
   std::string name;
   std::string path;  ///< preset:NAME, clip:FILE or a path file; empty where way-points are given
   std::vector<WayPoint> wayPoints = {};  ///< a path drawn in the document itself
-  double seconds = 10.0;                 ///< 0, for way-points only: as long as the path takes
+  /// 0: a preset's usual 10 s, else as long as the clip or path takes.
+  double seconds = 10.0;
+  bool startFromClip = false;  ///< clip:FILE only: its first frames start the motion
+  bool followsClip() const { return wayPoints.empty() && path.starts_with("clip:"); }
   bool operator==(const ExperimentPath&) const = default;
 };
 
 struct Experiment {
   std::string title = "Experiment";
   std::string notes;
-  /// Files, folders, @LIST, or walker:CLIPS,SECONDS,SEED for the procedural walker.
+  /// Files, folders, @LIST, or walker:CLIPS,SECONDS,SEED for the procedural walker. A document may
+  /// have none yet; running it then fails.
   std::vector<std::string> natural;
   std::vector<ExperimentSystem> systems;
   std::vector<ExperimentPath> paths;
@@ -44,8 +51,9 @@ struct Experiment {
   bool operator==(const Experiment&) const = default;
 };
 
-/// Strict: unknown keys, wrong types and empty lists throw InputError naming the key.
+/// Strict: unknown keys, wrong types and values out of range throw InputError naming the key.
 Experiment experimentFromJson(const Json& value, const std::string& origin);
+/// As experimentFromJson; the folder is the file's, as a whole name.
 Experiment readExperiment(const std::filesystem::path& path);
 Json toJson(const Experiment& experiment);
 /// Written atomically. Throws FileError.

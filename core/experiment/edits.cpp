@@ -34,6 +34,19 @@ bool isFile(const std::string& source) {
   return !source.starts_with("walker:") && !source.starts_with("preset:") && !source.empty();
 }
 
+/// Way-points are edited whole: /paths/INDEX/waypoints/INDEX.
+constexpr size_t kDeepestPlace = 4;
+
+std::vector<std::string> stepsOf(const std::string& pointer) {
+  std::vector<std::string> out;
+  for (size_t at = 0; at < pointer.size() && out.size() < kDeepestPlace;) {
+    const size_t next = std::min(pointer.find('/', at + 1), pointer.size());
+    out.push_back(pointer.substr(at, next - at));
+    at = next;
+  }
+  return out;
+}
+
 /// `source` may have a mark in front (@LIST, clip:FILE).
 std::string moved(const std::string& source, const fs::path& from, const fs::path& to) {
   if (!isFile(source)) return source;
@@ -87,6 +100,20 @@ void renamePath(Experiment& experiment, size_t index, const std::string& name) {
   rename(experiment.paths, index, name, "path");
 }
 
+void removeSystem(Experiment& experiment, size_t index) {
+  if (index < experiment.systems.size())
+    experiment.systems.erase(experiment.systems.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+void removeNatural(Experiment& experiment, const std::string& source) {
+  std::erase(experiment.natural, source);
+}
+
+void setPathSeconds(Experiment& experiment, size_t index, double seconds) {
+  const bool whole = !(seconds >= 0.5 * kShortestPathS);
+  experiment.paths.at(index).seconds = whole ? 0.0 : std::max(kShortestPathS, seconds);
+}
+
 void moveToFolder(Experiment& experiment, const fs::path& folder) {
   const fs::path from = experiment.folder;
   for (std::string& source : experiment.natural) source = moved(source, from, folder);
@@ -94,6 +121,27 @@ void moveToFolder(Experiment& experiment, const fs::path& folder) {
     system.model = moved(system.model, from, folder);
   for (ExperimentPath& path : experiment.paths) path.path = moved(path.path, from, folder);
   experiment.folder = folder;
+}
+
+Experiment asStored(const Experiment& experiment) {
+  Experiment out = experimentFromJson(toJson(experiment), experiment.title);
+  out.folder = experiment.folder;
+  return out;
+}
+
+std::string changedPlace(const Experiment& before, const Experiment& after) {
+  std::vector<std::string> common;
+  bool first = true;
+  for (const Json& change : Json::diff(toJson(before), toJson(after))) {
+    const auto steps = stepsOf(change["path"].get<std::string>());
+    if (first) common = steps;
+    first = false;
+    const auto ends = std::mismatch(common.begin(), common.end(), steps.begin(), steps.end());
+    common.erase(ends.first, common.end());
+  }
+  std::string out;
+  for (const std::string& step : common) out += step;
+  return out;
 }
 
 }  // namespace marey

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "experiment/document.h"
 
@@ -21,8 +22,19 @@ size_t addNatural(Experiment& experiment, const std::vector<std::string>& source
 /// Renames the item at `index`. Throws InputError where the name is empty or taken.
 void renameSystem(Experiment& experiment, size_t index, const std::string& name);
 void renamePath(Experiment& experiment, size_t index, const std::string& name);
+void removeSystem(Experiment& experiment, size_t index);
+void removeNatural(Experiment& experiment, const std::string& source);
+/// Sets how long a path is followed; what rounds to 0 means as long as it takes, other values are
+/// raised to the shortest one that a document may hold.
+void setPathSeconds(Experiment& experiment, size_t index, double seconds);
 /// Makes relative file names of the document start at `folder` instead of at its present folder,
 /// so that a document saved elsewhere still finds its files.
 void moveToFolder(Experiment& experiment, const std::filesystem::path& folder);
+/// The document as it would be after saving and opening it again. Throws InputError naming the key
+/// where such a file could not be opened.
+Experiment asStored(const Experiment& experiment);
+/// What differs: the JSON pointer of the narrowest value (a whole way-point, not one of its
+/// coordinates) that holds all differences; empty: the whole document, or nothing.
+std::string changedPlace(const Experiment& before, const Experiment& after);
 
 }  // namespace marey

@@ -118,6 +118,9 @@ double floorOf(const ModelInfo& info) {
 
 ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
                                Progress& progress) {
+  if (experiment.natural.empty())
+    throw InputError({.path = experiment.title, .item = "key 'natural'"},
+                     "at least one source of clips", "none");
   ExperimentResult out{.experiment = experiment, .hash = experimentHash(experiment)};
   Progress reading = progress.part(0.0, 0.05);
   out.natural = naturalClips(experiment, reading);

@@ -42,10 +42,19 @@ struct ExperimentResult {
   std::vector<SystemResult> systems;
 };
 
-/// Natural clips at the experiment's rate. Throws InputError or FileError.
+/// Natural clips at the experiment's rate. Throws InputError or FileError at the first fault.
 std::vector<Clip> naturalClips(const Experiment& experiment, Progress& progress);
-/// Deterministic for a document, its files and the model weights. Throws InputError, FileError,
-/// NumericError, CancelledError.
+
+/// What could be read of the natural sources, at the experiment's rate.
+struct NaturalMotion {
+  std::vector<Clip> clips;
+  std::vector<std::string> sources;  ///< of the document, one for every clip
+  std::vector<std::string> faults;   ///< why a file or source is missing
+};
+/// As naturalClips, but a file that cannot be read costs only its own clips. Throws CancelledError.
+NaturalMotion readableNatural(const Experiment& experiment, Progress& progress);
+/// Deterministic for a document, its files and the model weights. Throws InputError (also where
+/// there is no natural motion), FileError, NumericError, CancelledError.
 ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
                                Progress& progress);
 

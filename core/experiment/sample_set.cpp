@@ -7,6 +7,8 @@
 
 namespace marey {
 namespace {
+/// Larger batches gain little and make cancelling slow.
+constexpr int kMostTogether = 64;
 
 /// Commands as runs of equal ones: hands hold keys for many frames.
 Json commandsToJson(const std::vector<LiveCommand>& commands) {
@@ -67,7 +69,7 @@ Json toJson(const SampleRecipe& recipe) {
               {"path", document["paths"][0]},
               {"samples", recipe.samples},
               {"seed", recipe.seed},
-              {"start", recipe.startFromClip ? "clip" : "mean"}};
+              {"start", recipe.path.startFromClip ? "clip" : "mean"}};
   if (recipe.steering)
     out["steering"] = {{"warm_up_s", recipe.steering->options.warmUpS},
                        {"smoothing_s", recipe.steering->options.smoothingS},
@@ -83,14 +85,14 @@ SampleSet drawSampleSet(const MotionModel& model, const SampleRecipe& recipe, Pr
       requestFor(model, {.path = recipe.path.path.empty() ? recipe.path.name : recipe.path.path,
                          .wayPoints = recipe.path.wayPoints,
                          .seconds = recipe.path.seconds,
-                         .startFromClip = recipe.startFromClip,
+                         .startFromClip = recipe.path.startFromClip,
                          .folder = recipe.folder});
   request.seed = recipe.seed;
   request.temperature = recipe.system.temperature;
   SampleSet out{.recipe = recipe, .modelHash = model.info().hash, .wanted = request.path};
-  const int together = chunk > 0 ? chunk : recipe.samples;
+  int together = chunk > 0 ? chunk : recipe.samples;
   double spentS = 0.0;
-  for (int first = 0; first < recipe.samples; first += together) {
+  for (int first = 0; first < recipe.samples; first += request.samples) {
     request.firstSample = first;
     request.samples = std::min(together, recipe.samples - first);
     const double all = recipe.samples;
@@ -106,6 +108,7 @@ SampleSet drawSampleSet(const MotionModel& model, const SampleRecipe& recipe, Pr
     }
     out.motions.insert(out.motions.end(), motions.begin(), motions.end());
     if (sink) sink(out.wanted, std::move(motions));
+    together = std::max(together, std::min(2 * together, kMostTogether));
   }
   const double frames =
       static_cast<double>(recipe.samples) * static_cast<double>(out.wanted.size());

@@ -23,7 +23,6 @@ struct SampleRecipe {
   uint64_t seed = 1;
   double fps = 20.0;             ///< of the document; the model must have it
   std::filesystem::path folder;  ///< relative names start there
-  bool startFromClip = false;    ///< clip:FILE paths only: the clip's first frames start the motion
   /// Of a steered motion, instead of the path, which only shows where it went.
   std::shared_ptr<const Steering> steering = nullptr;
 
@@ -48,9 +47,9 @@ struct SampleSet {
 using MotionSink =
     std::function<void(const std::vector<RootFrame>& wanted, std::vector<SampledMotion> motions)>;
 
-/// Draws a recipe; `chunk` motions advance together (0: all) and are handed to `sink`, where there
-/// is one. Motions do not depend on the chunk. Throws UsageError, InputError, NumericError and
-/// CancelledError.
+/// Draws a recipe; `chunk` motions advance together at first (0: all), then twice as many each time
+/// up to 64, since a large batch is faster, and are handed to `sink`, where there is one. Motions
+/// do not depend on the chunk. Throws UsageError, InputError, NumericError and CancelledError.
 SampleSet drawSampleSet(const MotionModel& model, const SampleRecipe& recipe, Progress& progress,
                         int chunk = 0, const MotionSink& sink = {});
 

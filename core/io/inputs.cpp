@@ -14,8 +14,8 @@ namespace {
 std::vector<fs::path> filesOfFolder(const fs::path& folder) {
   std::vector<fs::path> out;
   std::error_code ec;
-  for (const auto& entry : fs::directory_iterator(folder, ec))
-    if (isMotionFile(entry.path())) out.push_back(entry.path());
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec))
+    if (isMotionFile(it->path())) out.push_back(it->path());
   if (ec) throw FileError(fmt::format("{}: cannot list: {}", folder.string(), ec.message()));
   if (out.empty())
     throw InputError({.path = folder.string()}, "a folder with motion files", "none in it");
@@ -48,7 +48,8 @@ std::vector<fs::path> filesOf(const std::string& input, const fs::path& folder) 
   if (input.starts_with('@')) return filesOfList(folder / input.substr(1));
   const fs::path path = folder / input;
   requireFile(path, "");
-  if (fs::is_directory(path)) return filesOfFolder(path);
+  std::error_code ec;
+  if (fs::is_directory(path, ec)) return filesOfFolder(path);
   return {path};
 }
 

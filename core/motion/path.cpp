@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/error.h"
@@ -171,6 +172,20 @@ class Timing {
   std::vector<double> m_times, m_lengths, m_speeds;
 };
 
+/// Degrees that read back as exactly this angle, where there are any (as for every angle that was
+/// read from degrees): a path that is saved and opened again gives the same motion.
+double degreesOf(double radians) {
+  const double nearest = radians / kRadians;
+  double low = nearest, high = nearest;
+  for (int ulp = 0; ulp < 4; ++ulp) {
+    if (kRadians * low == radians) return low;
+    if (kRadians * high == radians) return high;
+    low = std::nextafter(low, -std::numeric_limits<double>::infinity());
+    high = std::nextafter(high, std::numeric_limits<double>::infinity());
+  }
+  return nearest;
+}
+
 /// Heading in a span: along the path, turned towards the facings of its ends where they are given.
 double headingIn(const WayPoint& from, const WayPoint& to, double u, double tangent,
                  double tangentFrom, double tangentTo) {
@@ -246,7 +261,7 @@ Json toJson(const std::vector<WayPoint>& points) {
     Json one = {{"x", p.x}, {"z", p.z}};
     if (p.timeS) one["time"] = *p.timeS;
     if (p.speedMS) one["speed"] = *p.speedMS;
-    if (p.facing) one["facing_deg"] = *p.facing / kRadians;
+    if (p.facing) one["facing_deg"] = degreesOf(*p.facing);
     list.push_back(one);
   }
   return {{"waypoints", list}};

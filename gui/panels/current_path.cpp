@@ -110,6 +110,7 @@ void CurrentPath::edit(const QString& label, const std::function<void(PathEdit&)
         ExperimentPath& path = experiment.paths.at(index);
         if (path.wayPoints.empty()) path.seconds = 0.0;
         path.path.clear();
+        path.startFromClip = false;
         path.wayPoints = edit.points();
       },
       amend);

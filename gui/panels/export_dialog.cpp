@@ -306,7 +306,7 @@ class ExportDialog : public QDialog {
     m_done->clear();
     m_result = std::make_shared<ExportResult>();
     m_job =
-        m_workspace.jobs().start(Lane::Files, tr("Exporting %1 motions").arg(wanted.items.size()),
+        m_workspace.jobs().start(Lane::Exports, tr("Exporting %1 motions").arg(wanted.items.size()),
                                  [wanted, result = m_result](Progress& progress) {
                                    *result = exportMotions(wanted, progress);
                                  });

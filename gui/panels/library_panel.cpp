@@ -11,6 +11,8 @@
 
 #include "panels/motion_tree.h"
 
+#include "experiment/edits.h"
+
 namespace marey::gui {
 namespace {
 
@@ -31,8 +33,12 @@ class LibraryPanel : public QWidget {
     layout->addWidget(search);
     layout->addWidget(m_view);
     connect(search, &QLineEdit::textChanged, this, [this](const QString& text) {
+      // Rows that are filtered away leave the view's selection, not the workspace's.
+      m_following = true;
       m_filter.setFilterFixedString(text);
+      m_following = false;
       if (!text.isEmpty()) m_view->expandAll();
+      showSelection();
     });
     connect(m_view->selectionModel(), &QItemSelectionModel::selectionChanged, this,
             &LibraryPanel::takeSelection);
@@ -71,12 +77,11 @@ class LibraryPanel : public QWidget {
   void expandSmall() {
     constexpr int kFew = 40;
     for (int row = 0; row < m_filter.rowCount(); ++row) {
-      const QModelIndex group = m_filter.index(row, 0);
-      const int motions = m_filter.rowCount(group);
-      if (motions > 0 && motions <= kFew && !m_known.contains(idAt(group).group)) {
-        m_view->expand(group);
-        m_known.insert(idAt(group).group);
-      }
+      const QModelIndex branch = m_filter.index(row, 0);
+      const int rows = m_filter.rowCount(branch);
+      const auto known =
+          std::pair(idAt(branch).group, m_model.sourceOf(m_filter.mapToSource(branch)));
+      if (rows > 0 && rows <= kFew && m_known.insert(known).second) m_view->expand(branch);
     }
   }
 
@@ -103,47 +108,58 @@ class LibraryPanel : public QWidget {
     m_following = false;
   }
 
-  void showOnly(const std::set<MotionId>& shown) {
-    for (const MotionGroup& group : m_workspace.groups())
-      for (int i = 0; i < static_cast<int>(group.motions.size()); ++i)
-        m_workspace.setVisible({group.id, i}, shown.contains({group.id, i}));
+  void showMenu(const QPoint& at) {
+    const QModelIndex index = m_filter.mapToSource(m_view->indexAt(at));
+    QMenu menu;
+    if (m_model.systemOf(index) >= 0)
+      fillModelMenu(menu, static_cast<size_t>(m_model.systemOf(index)));
+    else if (const MotionGroup* group = m_workspace.group(m_model.idOf(index).group))
+      fillGroupMenu(menu, *group, m_model.sourceOf(index));
+    if (!menu.isEmpty()) menu.exec(m_view->viewport()->mapToGlobal(at));
   }
 
-  void showMenu(const QPoint& at) {
-    const MotionId id = idAt(m_view->indexAt(at));
-    const MotionGroup* group = m_workspace.group(id.group);
-    if (group == nullptr) return;
-    const int groupId = id.group;
-    QMenu menu;
+  void fillModelMenu(QMenu& menu, size_t system) {
+    menu.addAction(tr("Remove model from the document"), this, [this, system] {
+      m_workspace.edit(tr("Remove model"), [=](Experiment& e) { removeSystem(e, system); });
+    });
+  }
+
+  void fillGroupMenu(QMenu& menu, const MotionGroup& group, const std::string& source) {
+    const int id = group.id;
     const auto selected = m_workspace.selection().motions;
     menu.addAction(tr("Show only the selected motions"), this,
-                   [this, selected] { showOnly(selected); })
+                   [this, selected] { m_workspace.showOnly(selected); })
         ->setEnabled(!selected.empty());
     menu.addAction(tr("Show all of this group"), this,
-                   [this, groupId] { m_workspace.setVisible(groupId, true); });
-    menu.addAction(tr("Hide this group"), this,
-                   [this, groupId] { m_workspace.setVisible(groupId, false); });
-    if (group->recipe) {
-      menu.addSeparator();
-      menu.addAction(tr("Sample again"), this, [this, recipe = *group->recipe, groupId] {
-        m_workspace.sample(recipe, groupId);
-      });
-      QAction* pin = menu.addAction(tr("Pin"), this, [this, groupId, pinned = group->pinned] {
-        m_workspace.setPinned(groupId, !pinned);
+                   [this, id] { m_workspace.setVisible(id, true); });
+    menu.addAction(tr("Hide this group"), this, [this, id] { m_workspace.setVisible(id, false); });
+    menu.addSeparator();
+    if (group.natural()) {
+      menu.addAction(tr("Remove source “%1” from the document").arg(QString::fromStdString(source)),
+                     this, [this, source] {
+                       m_workspace.edit(tr("Remove source"),
+                                        [&](Experiment& e) { removeNatural(e, source); });
+                     });
+      return;
+    }
+    if (group.recipe) {
+      menu.addAction(tr("Sample again"), this,
+                     [this, recipe = *group.recipe, id] { m_workspace.sample(recipe, id); });
+      QAction* pin = menu.addAction(tr("Pin"), this, [this, id, pinned = group.pinned] {
+        m_workspace.setPinned(id, !pinned);
       });
       pin->setCheckable(true);
-      pin->setChecked(group->pinned);
-      menu.addAction(tr("Remove"), this, [this, groupId] { m_workspace.removeGroup(groupId); });
+      pin->setChecked(group.pinned);
     }
-    menu.exec(m_view->viewport()->mapToGlobal(at));
+    menu.addAction(tr("Remove these motions"), this, [this, id] { m_workspace.removeGroup(id); });
   }
 
   Workspace& m_workspace;
   MotionTree m_model;
   QSortFilterProxyModel m_filter;
   QTreeView* m_view = nullptr;
-  std::set<int> m_known;     ///< groups that were opened once
-  bool m_following = false;  ///< the view is being set, not used
+  std::set<std::pair<int, std::string>> m_known;  ///< branches that were opened once
+  bool m_following = false;                       ///< the view is being set, not used
 };
 
 }  // namespace

@@ -1,17 +1,20 @@
 #include "panels/motion_tree.h"
 
-#include <QColor>
+#include <QApplication>
+#include <QFileInfo>
 #include <QFont>
 #include <QIcon>
 #include <QPainter>
 #include <QPixmap>
 #include <algorithm>
 
+#include "panels/paint_style.h"
+
 namespace marey::gui {
 namespace {
 
-/// Motions have the row of their group plus one as internal id; groups have 0.
-constexpr quintptr kGroupLevel = 0;
+/// What lies in a branch has the branch's row plus one as internal id; branches have 0.
+constexpr quintptr kBranchLevel = 0;
 
 QIcon swatch(const render::Colour& colour) {
   QPixmap picture(14, 14);
@@ -19,14 +22,15 @@ QIcon swatch(const render::Colour& colour) {
   QPainter painter(&picture);
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(QColor(128, 128, 128));
-  painter.setBrush(QColor::fromRgbF(colour.r, colour.g, colour.b));
+  painter.setBrush(shownColour(colour, isDark(QApplication::palette())));
   painter.drawEllipse(1, 1, 11, 11);
   return picture;
 }
 
 QString recipeText(const MotionGroup& group) {
-  if (!group.recipe)
-    return MotionTree::tr("%n natural clip(s)", nullptr, static_cast<int>(group.motions.size()));
+  const int motions = static_cast<int>(group.motions.size());
+  if (group.natural()) return MotionTree::tr("%n natural clip(s)", nullptr, motions);
+  if (!group.recipe) return MotionTree::tr("%n steered motion(s)", nullptr, motions);
   const SampleRecipe& r = *group.recipe;
   return MotionTree::tr("%1 along “%2”\n%3 samples, seed %4, temperature %5\nmodel %6 (%7)")
       .arg(QString::fromStdString(r.system.name), QString::fromStdString(r.path.name))
@@ -42,85 +46,127 @@ QString recipeText(const MotionGroup& group) {
 MotionTree::MotionTree(Workspace& workspace, QObject* parent)
     : QAbstractItemModel(parent), m_workspace(workspace) {
   connect(&workspace, &Workspace::motionsChanged, this, &MotionTree::follow);
+  connect(&workspace, &Workspace::documentChanged, this, &MotionTree::follow);
   connect(&workspace, &Workspace::visibilityChanged, this, &MotionTree::refreshColumn);
   follow();
 }
 
+std::vector<MotionTree::Branch> MotionTree::branchesNow() const {
+  std::vector<Branch> out;
+  for (const MotionGroup& group : m_workspace.groups()) {
+    const int motions = static_cast<int>(group.motions.size());
+    const bool severalSources =
+        motions > 0 && group.motions.front().source != group.motions.back().source;
+    if (!severalSources) {
+      out.push_back({group.id, {}, 0, motions});
+      continue;
+    }
+    // Clips of one source stand together.
+    for (int i = 0; i < motions; ++i) {
+      const std::string& source = group.motions[static_cast<size_t>(i)].source;
+      if (i == 0 || source != out.back().source) out.push_back({group.id, source, i, 0});
+      ++out.back().rows;
+    }
+  }
+  const int systems = static_cast<int>(m_workspace.experiment().systems.size());
+  if (systems > 0) out.push_back({kModels, {}, 0, systems});
+  return out;
+}
+
 void MotionTree::follow() {
-  std::vector<Rows> now;
-  for (const MotionGroup& group : m_workspace.groups())
-    now.push_back({group.id, static_cast<int>(group.motions.size())});
-  if (now == m_rows) return refreshColumn();
+  std::vector<Branch> now = branchesNow();
+  if (now == m_branches) return refreshColumn();
   // Motions that arrive keep the view where it is; anything else is a new tree.
   const bool same =
-      now.size() == m_rows.size() &&
-      std::equal(now.begin(), now.end(), m_rows.begin(), [](const Rows& a, const Rows& b) {
-        return a.group == b.group && a.motions >= b.motions;
+      now.size() == m_branches.size() &&
+      std::equal(now.begin(), now.end(), m_branches.begin(), [](const Branch& a, const Branch& b) {
+        return a.group == b.group && a.source == b.source && a.first == b.first && a.rows >= b.rows;
       });
   if (!same) {
     beginResetModel();
-    m_rows = std::move(now);
+    m_branches = std::move(now);
     endResetModel();
     return;
   }
   for (size_t i = 0; i < now.size(); ++i) {
-    if (now[i] == m_rows[i]) continue;
-    beginInsertRows(index(static_cast<int>(i), 0), m_rows[i].motions, now[i].motions - 1);
-    m_rows[i] = now[i];
+    if (now[i] == m_branches[i]) continue;
+    beginInsertRows(index(static_cast<int>(i), 0), m_branches[i].rows, now[i].rows - 1);
+    m_branches[i] = now[i];
     endInsertRows();
   }
   refreshColumn();
 }
 
 void MotionTree::refreshColumn() {
-  if (m_rows.empty()) return;
-  const int last = static_cast<int>(m_rows.size()) - 1;
+  if (m_branches.empty()) return;
+  const int last = static_cast<int>(m_branches.size()) - 1;
   Q_EMIT dataChanged(index(0, 0), index(last, kColumns - 1));
   for (int row = 0; row <= last; ++row) {
-    const int motions = m_rows[static_cast<size_t>(row)].motions;
-    if (motions == 0) continue;
-    const QModelIndex group = index(row, 0);
-    Q_EMIT dataChanged(index(0, 0, group), index(motions - 1, kColumns - 1, group));
+    const int rows = m_branches[static_cast<size_t>(row)].rows;
+    if (rows == 0) continue;
+    const QModelIndex branch = index(row, 0);
+    Q_EMIT dataChanged(index(0, 0, branch), index(rows - 1, kColumns - 1, branch));
   }
 }
 
-const MotionGroup* MotionTree::groupAt(int row) const {
-  if (row < 0 || row >= static_cast<int>(m_rows.size())) return nullptr;
-  return m_workspace.group(m_rows[static_cast<size_t>(row)].group);
+const MotionTree::Branch* MotionTree::branchOf(const QModelIndex& index) const {
+  if (!index.isValid()) return nullptr;
+  const bool isBranch = index.internalId() == kBranchLevel;
+  const auto row = isBranch ? static_cast<size_t>(index.row()) : index.internalId() - 1;
+  return row < m_branches.size() ? &m_branches[row] : nullptr;
 }
 
 MotionId MotionTree::idOf(const QModelIndex& index) const {
-  if (!index.isValid()) return {};
-  const bool isGroup = index.internalId() == kGroupLevel;
-  const int row = isGroup ? index.row() : static_cast<int>(index.internalId()) - 1;
-  const MotionGroup* group = groupAt(row);
-  if (group == nullptr) return {};
-  return {group->id, isGroup ? -1 : index.row()};
+  const Branch* branch = branchOf(index);
+  if (branch == nullptr || branch->group == kModels) return {};
+  return {branch->group, index.internalId() == kBranchLevel ? -1 : branch->first + index.row()};
+}
+
+int MotionTree::systemOf(const QModelIndex& index) const {
+  const Branch* branch = branchOf(index);
+  const bool model =
+      branch != nullptr && branch->group == kModels && index.internalId() != kBranchLevel;
+  return model ? index.row() : -1;
+}
+
+std::string MotionTree::sourceOf(const QModelIndex& index) const {
+  const Branch* branch = branchOf(index);
+  const MotionGroup* group = branch ? m_workspace.group(branch->group) : nullptr;
+  if (group == nullptr || branch->first >= static_cast<int>(group->motions.size())) return {};
+  return group->motions[static_cast<size_t>(branch->first)].source;
 }
 
 QModelIndex MotionTree::indexOf(const MotionId& id) const {
-  const auto found = std::find_if(m_rows.begin(), m_rows.end(),
-                                  [&](const Rows& rows) { return rows.group == id.group; });
-  if (found == m_rows.end()) return {};
-  const QModelIndex group = index(static_cast<int>(found - m_rows.begin()), 0);
-  return id.index < 0 ? group : index(id.index, 0, group);
+  for (size_t row = 0; row < m_branches.size(); ++row) {
+    const Branch& branch = m_branches[row];
+    if (branch.group == id.group && id.index >= branch.first &&
+        id.index < branch.first + branch.rows)
+      return index(id.index - branch.first, 0, index(static_cast<int>(row), 0));
+  }
+  return {};
+}
+
+std::vector<MotionId> MotionTree::motionsOf(const Branch& branch) const {
+  std::vector<MotionId> out;
+  for (int i = branch.first; i < branch.first + branch.rows; ++i) out.push_back({branch.group, i});
+  return out;
 }
 
 QModelIndex MotionTree::index(int row, int column, const QModelIndex& parent) const {
   if (row < 0 || column < 0 || column >= kColumns || row >= rowCount(parent)) return {};
   return createIndex(row, column,
-                     parent.isValid() ? static_cast<quintptr>(parent.row()) + 1 : kGroupLevel);
+                     parent.isValid() ? static_cast<quintptr>(parent.row()) + 1 : kBranchLevel);
 }
 
 QModelIndex MotionTree::parent(const QModelIndex& child) const {
-  if (!child.isValid() || child.internalId() == kGroupLevel) return {};
-  return createIndex(static_cast<int>(child.internalId()) - 1, 0, kGroupLevel);
+  if (!child.isValid() || child.internalId() == kBranchLevel) return {};
+  return createIndex(static_cast<int>(child.internalId()) - 1, 0, kBranchLevel);
 }
 
 int MotionTree::rowCount(const QModelIndex& parent) const {
-  if (!parent.isValid()) return static_cast<int>(m_rows.size());
-  if (parent.internalId() != kGroupLevel || parent.column() != 0) return 0;
-  return m_rows[static_cast<size_t>(parent.row())].motions;
+  if (!parent.isValid()) return static_cast<int>(m_branches.size());
+  if (parent.internalId() != kBranchLevel || parent.column() != 0) return 0;
+  return m_branches[static_cast<size_t>(parent.row())].rows;
 }
 
 int MotionTree::columnCount(const QModelIndex&) const {
@@ -130,38 +176,59 @@ int MotionTree::columnCount(const QModelIndex&) const {
 QVariant MotionTree::data(const QModelIndex& index, int role) const {
   if (role == Qt::TextAlignmentRole && index.column() != Name)
     return static_cast<int>(Qt::AlignRight | Qt::AlignVCenter);
+  const Branch* branch = branchOf(index);
+  if (branch == nullptr) return {};
+  if (index.internalId() == kBranchLevel) return branchData(*branch, index.column(), role);
+  const int system = systemOf(index);
+  if (system >= 0) return modelData(static_cast<size_t>(system), index.column(), role);
   const MotionId id = idOf(index);
   const MotionGroup* group = m_workspace.group(id.group);
-  if (group == nullptr) return {};
-  if (id.index < 0) return groupData(*group, index.column(), role);
-  if (id.index >= static_cast<int>(group->motions.size())) return {};
+  if (group == nullptr || id.index >= static_cast<int>(group->motions.size())) return {};
   return motionData(*group, static_cast<size_t>(id.index), index.column(), role);
 }
 
-QVariant MotionTree::groupData(const MotionGroup& group, int column, int role) const {
-  if (role == Qt::ToolTipRole) return recipeText(group);
-  if (column == Name) {
-    if (role == Qt::DisplayRole)
-      return QStringLiteral("%1  (%2)%3")
-          .arg(QString::fromStdString(group.name))
-          .arg(group.motions.size())
-          .arg(group.pinned      ? tr("  pinned")
-               : !group.complete ? tr("  …")
-                                 : QString());
-    if (role == Qt::DecorationRole) return swatch(group.colour());
-    if (role == Qt::FontRole) {
-      QFont font;
-      font.setBold(true);
-      return font;
-    }
-    if (role == Qt::CheckStateRole) {
-      const auto shown = std::count_if(group.motions.begin(), group.motions.end(),
-                                       [](const Motion& m) { return m.visible; });
-      if (shown == 0) return Qt::Unchecked;
-      return shown == static_cast<std::ptrdiff_t>(group.motions.size()) ? Qt::Checked
-                                                                        : Qt::PartiallyChecked;
-    }
+QVariant MotionTree::branchData(const Branch& branch, int column, int role) const {
+  const MotionGroup* group = m_workspace.group(branch.group);
+  if (column == Name && role == Qt::FontRole) {
+    QFont font;
+    font.setBold(true);
+    return font;
   }
+  if (branch.group == kModels)
+    return column == Name && role == Qt::DisplayRole ? tr("Models  (%1)").arg(branch.rows)
+                                                     : QVariant();
+  if (group == nullptr) return {};
+  const QString source = QString::fromStdString(branch.source);
+  if (role == Qt::ToolTipRole) return source.isEmpty() ? recipeText(*group) : source;
+  if (column != Name) return {};
+  if (role == Qt::DisplayRole) {
+    const QString name = source.isEmpty()
+                             ? QString::fromStdString(group->name)
+                             : QStringLiteral("%1 – %2").arg(QString::fromStdString(group->name),
+                                                             QFileInfo(source).fileName());
+    const QString state = group->pinned ? tr("  pinned") : !group->complete ? tr("  …") : QString();
+    return QStringLiteral("%1  (%2)%3").arg(name).arg(branch.rows).arg(state);
+  }
+  if (role == Qt::DecorationRole) return swatch(group->colour());
+  if (role == Qt::CheckStateRole) return shownState(branch, *group);
+  return {};
+}
+
+QVariant MotionTree::shownState(const Branch& branch, const MotionGroup& group) const {
+  const int last = std::min(branch.first + branch.rows, static_cast<int>(group.motions.size()));
+  const auto shown = std::count_if(group.motions.begin() + branch.first,
+                                   group.motions.begin() + std::max(branch.first, last),
+                                   [](const Motion& m) { return m.visible; });
+  if (shown == 0) return Qt::Unchecked;
+  return shown == branch.rows ? Qt::Checked : Qt::PartiallyChecked;
+}
+
+QVariant MotionTree::modelData(size_t index, int column, int role) const {
+  const auto& systems = m_workspace.experiment().systems;
+  if (column != Name || index >= systems.size()) return {};
+  if (role == Qt::DisplayRole) return QString::fromStdString(systems[index].name);
+  if (role == Qt::DecorationRole) return swatch(render::colourOf(static_cast<int>(index)));
+  if (role == Qt::ToolTipRole) return QString::fromStdString(m_workspace.modelFile(systems[index]));
   return {};
 }
 
@@ -195,12 +262,13 @@ QVariant MotionTree::motionData(const MotionGroup& group, size_t index, int colu
 
 bool MotionTree::setData(const QModelIndex& index, const QVariant& value, int role) {
   if (role != Qt::CheckStateRole) return false;
-  const MotionId id = idOf(index);
+  const Branch* branch = branchOf(index);
+  if (branch == nullptr || branch->group == kModels) return false;
   const bool shown = value.toInt() == Qt::Checked;
-  if (id.index < 0)
-    m_workspace.setVisible(id.group, shown);
+  if (index.internalId() == kBranchLevel)
+    m_workspace.setVisible(motionsOf(*branch), shown);
   else
-    m_workspace.setVisible(id, shown);
+    m_workspace.setVisible(idOf(index), shown);
   return true;
 }
 
@@ -225,7 +293,9 @@ QVariant MotionTree::headerData(int section, Qt::Orientation orientation, int ro
 Qt::ItemFlags MotionTree::flags(const QModelIndex& index) const {
   if (!index.isValid()) return Qt::NoItemFlags;
   Qt::ItemFlags flags = Qt::ItemIsEnabled | Qt::ItemIsSelectable;
-  if (index.column() == Name) flags |= Qt::ItemIsUserCheckable;
+  const Branch* branch = branchOf(index);
+  if (index.column() == Name && branch && branch->group != kModels)
+    flags |= Qt::ItemIsUserCheckable;
   return flags;
 }
 

@@ -1,4 +1,5 @@
-// The tree of groups and motions for views; thousands of motions cost nothing until looked at.
+// The tree of motions for views: natural motion by its sources, sample sets, and the document's
+// models; thousands of motions cost nothing until looked at.
 #pragma once
 
 #include <QAbstractItemModel>
@@ -14,9 +15,14 @@ class MotionTree : public QAbstractItemModel {
 
   explicit MotionTree(Workspace& workspace, QObject* parent = nullptr);
 
-  /// index -1 of a MotionId stands for a whole group.
+  /// A branch has index -1; models have no motion at all.
   MotionId idOf(const QModelIndex& index) const;
+  /// Of a motion.
   QModelIndex indexOf(const MotionId& id) const;
+  /// The document's name for where a natural motion or branch comes from; else empty.
+  std::string sourceOf(const QModelIndex& index) const;
+  /// The place of a model in the document; -1 for all other rows.
+  int systemOf(const QModelIndex& index) const;
 
   QModelIndex index(int row, int column, const QModelIndex& parent = {}) const override;
   QModelIndex parent(const QModelIndex& child) const override;
@@ -28,19 +34,27 @@ class MotionTree : public QAbstractItemModel {
   Qt::ItemFlags flags(const QModelIndex& index) const override;
 
  private:
-  /// What the rows were at the last change of structure: views are told before rows move.
-  struct Rows {
-    int group = 0, motions = 0;
-    bool operator==(const Rows&) const = default;
+  /// What a branch was at the last change of structure: views are told before rows move.
+  struct Branch {
+    int group = kModels;
+    std::string source;       ///< natural motion of several sources: one of them
+    int first = 0, rows = 0;  ///< of the group's motions, or the number of models
+    bool operator==(const Branch&) const = default;
   };
+  static constexpr int kModels = -1;
+  std::vector<Branch> branchesNow() const;
   void follow();
   void refreshColumn();
-  QVariant groupData(const MotionGroup& group, int column, int role) const;
+  /// The branch that `index` is or lies in.
+  const Branch* branchOf(const QModelIndex& index) const;
+  std::vector<MotionId> motionsOf(const Branch& branch) const;
+  QVariant branchData(const Branch& branch, int column, int role) const;
+  QVariant shownState(const Branch& branch, const MotionGroup& group) const;
+  QVariant modelData(size_t system, int column, int role) const;
   QVariant motionData(const MotionGroup& group, size_t index, int column, int role) const;
-  const MotionGroup* groupAt(int row) const;
 
   Workspace& m_workspace;
-  std::vector<Rows> m_rows;
+  std::vector<Branch> m_branches;
 };
 
 }  // namespace marey::gui

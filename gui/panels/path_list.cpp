@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "panels/paint_style.h"
+#include "shell/file_dialogs.h"
 
 #include "base/error.h"
 #include "experiment/edits.h"
@@ -52,7 +53,7 @@ void PathList::build() {
   m_more = addMenuButton(QStringLiteral("pathMore"), tr("More"), tr("Rename, copy, files"));
   m_seconds = new QDoubleSpinBox(this);
   m_seconds->setObjectName(QStringLiteral("pathSeconds"));
-  m_seconds->setRange(0.0, 600.0);
+  m_seconds->setRange(0.0, 86400.0);
   m_seconds->setDecimals(1);
   m_seconds->setSuffix(tr(" s"));
   m_seconds->setKeyboardTracking(false);
@@ -62,8 +63,8 @@ void PathList::build() {
   connect(m_seconds, qOverload<double>(&QDoubleSpinBox::valueChanged), this, [this](double value) {
     if (m_filling || !m_path.path()) return;
     const auto index = static_cast<size_t>(m_workspace.currentPath());
-    m_workspace.edit(tr("Length of path"),
-                     [&](Experiment& e) { e.paths.at(index).seconds = value; });
+    m_workspace.edit(tr("Length of path"), [&](Experiment& e) { setPathSeconds(e, index, value); });
+    refresh();  // too short a length shows as it is now
   });
   m_makeDrawn = new QPushButton(tr("Make editable"), this);
   m_makeDrawn->setObjectName(QStringLiteral("pathMakeEditable"));
@@ -132,8 +133,9 @@ void PathList::refresh() {
   const ExperimentPath* path = m_path.path();
   m_choice->setEnabled(path != nullptr);
   m_seconds->setEnabled(path != nullptr);
-  // 0 means something else for what is not drawn: a preset's usual 10 s, or a whole clip.
-  m_seconds->setSpecialValueText(m_path.drawn() ? tr("whole path") : tr("usual"));
+  // A preset has no end of its own.
+  const bool preset = path && !m_path.drawn() && path->path.starts_with("preset:");
+  m_seconds->setSpecialValueText(preset ? tr("usual") : tr("whole path"));
   m_seconds->setValue(path ? path->seconds : 0.0);
   m_makeDrawn->setVisible(path && !m_path.drawn());
   m_makeDrawn->setEnabled(m_path.points().size() > 1);
@@ -145,8 +147,7 @@ void PathList::refreshActions() {
   const bool any = m_path.path() != nullptr;
   m_rename->setEnabled(any);
   m_copy->setEnabled(any);
-  // A document without any path cannot be run or stored.
-  m_remove->setEnabled(m_workspace.experiment().paths.size() > 1);
+  m_remove->setEnabled(any);
   m_export->setEnabled(m_path.points().size() > 1);
   m_take->setEnabled(!m_workspace.selection().motions.empty());
 }
@@ -219,9 +220,9 @@ void PathList::askImport() {
 }
 
 void PathList::askExport() {
-  const QString file = QFileDialog::getSaveFileName(
-      this, tr("Save path"), m_choice->currentText() + QStringLiteral(".json"),
-      tr("Path files (*.json)"));
+  const QString file =
+      askSaveFile(this, tr("Save path"), m_choice->currentText() + QStringLiteral(".json"),
+                  tr("Path files (*.json)"), QStringLiteral("json"));
   if (!file.isEmpty()) exportFile(file);
 }
 

@@ -6,12 +6,16 @@
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPushButton>
 #include <QRandomGenerator>
+#include <QRegularExpressionValidator>
 #include <QSpinBox>
 #include <QTableWidget>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <limits>
 
 #include "experiment/edits.h"
 
@@ -50,7 +54,11 @@ class SamplingPanel : public QWidget {
     m_systems->setMaximumHeight(150);
     connect(m_systems, &QTableWidget::cellChanged, this, [this](int row, int column) {
       if (m_refreshing || column != 0) return;
+      const std::string& before = m_workspace.experiment().systems.at(size_t(row)).name;
+      m_workspace.setSampled(before, m_systems->item(row, 0)->checkState() == Qt::Checked);
+      refreshButtons();
       const std::string name = m_systems->item(row, 0)->text().toStdString();
+      if (name == before) return;
       m_workspace.edit(tr("Rename model"),
                        [&](Experiment& e) { renameSystem(e, static_cast<size_t>(row), name); });
       refresh();  // a refused name goes back
@@ -64,28 +72,35 @@ class SamplingPanel : public QWidget {
     m_path->setObjectName(QStringLiteral("samplePath"));
     m_seconds = new QDoubleSpinBox(this);
     m_seconds->setObjectName(QStringLiteral("sampleSeconds"));
-    m_seconds->setRange(0.0, 3600.0);
+    m_seconds->setRange(0.0, 86400.0);
     m_seconds->setDecimals(1);
     m_seconds->setSuffix(tr(" s"));
     m_seconds->setSpecialValueText(tr("as long as the path takes"));
     m_count = new QSpinBox(this);
     m_count->setObjectName(QStringLiteral("sampleCount"));
-    m_count->setRange(1, 100000);
-    m_seed = new QSpinBox(this);
+    m_count->setRange(1, std::numeric_limits<int>::max());
+    m_start = new QComboBox(this);
+    m_start->setObjectName(QStringLiteral("sampleStart"));
+    m_start->addItems({tr("Mean pose"), tr("First frames of the clip")});
+    m_start->setToolTip(
+        tr("What the motion grows out of; a clip's frames for paths of clips only"));
+    // A spin box holds 32 bits, a seed 64.
+    m_seed = new QLineEdit(this);
     m_seed->setObjectName(QStringLiteral("sampleSeed"));
-    m_seed->setRange(0, 2147483647);
+    m_seed->setValidator(
+        new QRegularExpressionValidator(QRegularExpression(QStringLiteral("[0-9]{1,20}")), m_seed));
     auto* another = new QToolButton(this);
     another->setObjectName(QStringLiteral("anotherSeed"));
     another->setText(tr("Another"));
     another->setToolTip(tr("A seed drawn at random"));
-    connect(another, &QToolButton::clicked, this, [this] {
-      m_seed->setValue(static_cast<int>(QRandomGenerator::global()->bounded(1, 1000000)));
-    });
+    connect(another, &QToolButton::clicked, this,
+            [this] { takeSeed(QString::number(QRandomGenerator::global()->bounded(1, 1000000))); });
     auto* seed = new QHBoxLayout;
     seed->addWidget(m_seed, 1);
     seed->addWidget(another);
     form->addRow(tr("Path"), m_path);
     form->addRow(tr("Length"), m_seconds);
+    form->addRow(tr("Start"), m_start);
     form->addRow(tr("Samples of each model"), m_count);
     form->addRow(tr("Seed"), seed);
     return form;
@@ -94,19 +109,19 @@ class SamplingPanel : public QWidget {
   QLayout* buildButtons() {
     m_run = new QPushButton(tr("Sample"), this);
     m_run->setObjectName(QStringLiteral("sampleButton"));
-    m_run->setToolTip(tr("Sample every model along the path (Ctrl+Return)"));
+    m_run->setToolTip(tr("Sample the ticked models along the path (Ctrl+Return)"));
     m_run->setDefault(true);
     m_cancel = new QPushButton(tr("Cancel"), this);
     m_cancel->setObjectName(QStringLiteral("sampleCancel"));
     auto* remove = new QPushButton(tr("Remove model"), this);
     remove->setObjectName(QStringLiteral("removeModel"));
     connect(m_run, &QPushButton::clicked, &m_workspace, &Workspace::sampleCurrentPath);
-    connect(m_cancel, &QPushButton::clicked, &m_workspace.jobs(), &JobQueue::cancelAll);
+    connect(m_cancel, &QPushButton::clicked, &m_workspace, &Workspace::cancelSampling);
     connect(remove, &QPushButton::clicked, this, [this] {
       const int row = m_systems->currentRow();
       if (row < 0) return;
       m_workspace.edit(tr("Remove model"),
-                       [row](Experiment& e) { e.systems.erase(e.systems.begin() + row); });
+                       [row](Experiment& e) { removeSystem(e, static_cast<size_t>(row)); });
     });
     auto* buttons = new QHBoxLayout;
     buttons->addWidget(m_run, 1);
@@ -119,20 +134,27 @@ class SamplingPanel : public QWidget {
     connect(m_count, qOverload<int>(&QSpinBox::valueChanged), this, [this](int n) {
       change(tr("Number of samples"), [n](Experiment& e) { e.samples = n; });
     });
-    connect(m_seed, qOverload<int>(&QSpinBox::valueChanged), this, [this](int seed) {
-      change(tr("Seed"), [seed](Experiment& e) { e.seed = static_cast<uint64_t>(seed); });
+    connect(m_seed, &QLineEdit::editingFinished, this, [this] { takeSeed(m_seed->text()); });
+    connect(m_start, qOverload<int>(&QComboBox::activated), this, [this](int index) {
+      const auto path = static_cast<size_t>(m_workspace.currentPath());
+      change(tr("Start of the motion"),
+             [=](Experiment& e) { e.paths.at(path).startFromClip = index == 1; });
     });
     connect(m_path, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
       if (!m_refreshing) m_workspace.setCurrentPath(index);
     });
     connect(m_seconds, qOverload<double>(&QDoubleSpinBox::valueChanged), this, [this](double s) {
       const auto path = static_cast<size_t>(m_workspace.currentPath());
-      change(tr("Length of the path"), [=](Experiment& e) {
-        if (path >= e.paths.size()) return;
-        const bool drawn = !e.paths[path].wayPoints.empty();
-        e.paths[path].seconds = drawn && s < 0.2 ? 0.0 : std::max(0.2, s);
-      });
+      change(tr("Length of path"), [=](Experiment& e) { setPathSeconds(e, path, s); });
     });
+  }
+
+  /// Numbers that do not fit 64 bits go back to the document's.
+  void takeSeed(const QString& text) {
+    bool fits = false;
+    const uint64_t seed = text.toULongLong(&fits);
+    if (fits) change(tr("Seed"), [seed](Experiment& e) { e.seed = seed; });
+    refresh();
   }
 
   void change(const QString& label, const std::function<void(Experiment&)>& edit) {
@@ -143,13 +165,15 @@ class SamplingPanel : public QWidget {
     m_refreshing = true;
     const Experiment& e = m_workspace.experiment();
     m_count->setValue(e.samples);
-    m_seed->setValue(static_cast<int>(e.seed));
+    m_seed->setText(QString::number(e.seed));
     m_path->clear();
     for (const ExperimentPath& path : e.paths) m_path->addItem(QString::fromStdString(path.name));
     m_path->setCurrentIndex(m_workspace.currentPath());
     const auto index = static_cast<size_t>(m_workspace.currentPath());
     m_seconds->setEnabled(index < e.paths.size());
     if (index < e.paths.size()) m_seconds->setValue(e.paths[index].seconds);
+    m_start->setEnabled(index < e.paths.size() && e.paths[index].followsClip());
+    m_start->setCurrentIndex(index < e.paths.size() && e.paths[index].startFromClip ? 1 : 0);
     refreshSystems();
     m_refreshing = false;
     refreshButtons();
@@ -165,6 +189,8 @@ class SamplingPanel : public QWidget {
       QPixmap swatch(12, 12);
       swatch.fill(QColor::fromRgbF(c.r, c.g, c.b));
       name->setIcon(swatch);
+      name->setCheckState(m_workspace.sampled(system.name) ? Qt::Checked : Qt::Unchecked);
+      name->setToolTip(tr("Ticked models are sampled"));
       m_systems->setItem(row, 0, name);
       auto* file = new QTableWidgetItem(QString::fromStdString(system.model));
       file->setToolTip(QString::fromStdString(m_workspace.modelFile(system)));
@@ -194,10 +220,14 @@ class SamplingPanel : public QWidget {
 
   void refreshButtons() {
     const Experiment& e = m_workspace.experiment();
-    m_run->setEnabled(!e.systems.empty() && !e.paths.empty());
-    m_cancel->setEnabled(!m_workspace.jobs().idle());
+    const bool any = std::any_of(e.systems.begin(), e.systems.end(), [this](const auto& system) {
+      return m_workspace.sampled(system.name);
+    });
+    m_run->setEnabled(any && !e.paths.empty());
+    m_cancel->setEnabled(m_workspace.sampling());
     m_speed->setText(e.systems.empty() ? tr("Add a model (Ctrl+M) or drop its file on the window.")
                      : e.paths.empty() ? tr("Add a path in the path editor.")
+                     : !any            ? tr("Tick a model to sample it.")
                                        : QString());
   }
 
@@ -206,7 +236,8 @@ class SamplingPanel : public QWidget {
   QComboBox* m_path = nullptr;
   QDoubleSpinBox* m_seconds = nullptr;
   QSpinBox* m_count = nullptr;
-  QSpinBox* m_seed = nullptr;
+  QLineEdit* m_seed = nullptr;
+  QComboBox* m_start = nullptr;
   QPushButton* m_run = nullptr;
   QPushButton* m_cancel = nullptr;
   QLabel* m_speed = nullptr;

@@ -2,7 +2,6 @@
 
 #include <QApplication>
 #include <QClipboard>
-#include <QFileDialog>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -12,6 +11,7 @@
 #include "panels/plot_panel.h"
 #include "panels/value_table.h"
 #include "plots/statistics_data.h"
+#include "shell/file_dialogs.h"
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -149,8 +149,9 @@ class StatisticsPanel : public PlotPanel {
   }
 
   void exportCsv() {
-    const QString file = QFileDialog::getSaveFileName(
-        this, tr("Export statistics"), QStringLiteral("statistics.csv"), tr("CSV (*.csv)"));
+    const QString file =
+        askSaveFile(this, tr("Export statistics"), QStringLiteral("statistics.csv"),
+                    tr("CSV (*.csv)"), QStringLiteral("csv"));
     if (file.isEmpty()) return;
     try {
       writeFileAtomically(file.toStdString(), statisticsText(*m_shown, ','));

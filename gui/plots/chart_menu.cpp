@@ -2,11 +2,11 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QContextMenuEvent>
-#include <QFileDialog>
 #include <QMenu>
 
 #include "plots/chart_files.h"
 #include "plots/chart_view.h"
+#include "shell/file_dialogs.h"
 
 #include "base/error.h"
 
@@ -32,12 +32,11 @@ void ChartView::copyPicture() const {
 }
 
 void ChartView::saveWithDialog(const QString& ending) {
-  const QString file =
-      QFileDialog::getSaveFileName(this, tr("Save chart"), m_fileStem + "." + ending,
-                                   tr("%1 (*.%2)").arg(ending.toUpper(), ending));
+  const QString file = askSaveFile(this, tr("Save chart"), m_fileStem + "." + ending,
+                                   tr("%1 (*.%2)").arg(ending.toUpper(), ending), ending);
   if (file.isEmpty()) return;
   try {
-    saveAs(file.endsWith("." + ending, Qt::CaseInsensitive) ? file : file + "." + ending);
+    saveAs(file);
   } catch (const Error& error) {
     Q_EMIT saveFailed(QString::fromStdString(error.what()));
   }

@@ -34,9 +34,10 @@ Experiment demoDocument() {
   const std::filesystem::path folder = dataFolder(QStringLiteral("demo")).toStdString();
   const auto write = [&](const char* name, std::string_view content) {
     std::error_code none;
-    // Another window may be reading the model.
-    if (std::filesystem::file_size(folder / name, none) != content.size() || none)
-      writeFileAtomically(folder / name, content);
+    // Another window may be reading the model, and its weights are known by the time of writing.
+    const bool there =
+        std::filesystem::is_regular_file(folder / name, none) && readFile(folder / name) == content;
+    if (!there) writeFileAtomically(folder / name, content);
   };
   write("demo.marey", demoModel());
   Experiment out = experimentFromJson(Json::parse(demoExperiment()), "the demonstration");
@@ -66,7 +67,7 @@ Autosave::~Autosave() {
   remove();
 }
 
-void Autosave::write() {
+bool Autosave::write() {
   const Experiment& e = m_workspace.experiment();
   const Json copy = {{"file", m_workspace.file().toStdString()},
                      {"folder", e.folder.string()},
@@ -80,6 +81,7 @@ void Autosave::write() {
                          QString::fromStdString(error.what()));
     m_failed = true;
   }
+  return !m_failed;
 }
 
 void Autosave::remove() {
@@ -87,27 +89,36 @@ void Autosave::remove() {
   QFile::remove(m_path);
 }
 
-std::vector<Recovered> Autosave::recover() {
-  std::vector<Recovered> out;
+Recovery Autosave::recover() {
+  Recovery out;
   const QDir folder(autosaveFolder());
   for (const QFileInfo& info : folder.entryInfoList({QStringLiteral("*.json")}, QDir::Files)) {
-    QLockFile lock(info.filePath() + QStringLiteral(".lock"));
-    lock.setStaleLockTime(0);
-    if (!lock.tryLock(0)) continue;  // its window is alive
+    const QString path = info.filePath();
+    auto lock = std::make_shared<QLockFile>(path + QStringLiteral(".lock"));
+    lock->setStaleLockTime(0);
+    if (!lock->tryLock(0)) continue;  // its window is alive, or another one is asking about it
     try {
-      const Json copy = readJson(info.filePath().toStdString());
-      JsonReader reader(copy, info.filePath().toStdString());
-      Recovered one{.experiment = experimentFromJson(reader.raw("experiment"), reader.origin())};
+      const Json copy = readJson(path.toStdString());
+      JsonReader reader(copy, path.toStdString());
+      Recovered one{.experiment = experimentFromJson(reader.raw("experiment"), reader.origin()),
+                    .file = QString::fromStdString(reader.required<std::string>("file")),
+                    .when = info.lastModified().toString(Qt::ISODate),
+                    .copy = path,
+                    .lock = std::move(lock)};
       one.experiment.folder = reader.required<std::string>("folder");
-      one.file = QString::fromStdString(reader.required<std::string>("file"));
-      one.when = info.lastModified().toString(Qt::ISODate);
-      out.push_back(std::move(one));
-    } catch (const Error&) {
-      // Cut off in the middle of the crash: nothing in it can be had back.
+      out.kept.push_back(std::move(one));
+    } catch (const Error& error) {
+      const QString aside = path + QStringLiteral(".broken");
+      QFile::remove(aside);
+      QFile::rename(path, aside);
+      out.broken += tr("%1\nIt is kept as %2.").arg(QString::fromStdString(error.what()), aside);
     }
-    QFile::remove(info.filePath());
   }
   return out;
+}
+
+void Autosave::discard(const Recovered& recovered) {
+  QFile::remove(recovered.copy);
 }
 
 QStringList recentFiles() {

@@ -6,7 +6,7 @@
 #include <QStringList>
 #include <QTimer>
 #include <memory>
-#include <optional>
+#include <vector>
 
 #include "shell/workspace.h"
 
@@ -16,11 +16,18 @@ namespace marey::gui {
 /// file). Throws FileError.
 Experiment demoDocument();
 
-/// Unsaved work of a window that did not close.
+/// Unsaved work of a window that did not close. No other window is offered it while this lives.
 struct Recovered {
   Experiment experiment;
   QString file;  ///< where the document had been saved; empty: nowhere
   QString when;
+  QString copy;  ///< the file that holds it, until discard()
+  std::shared_ptr<QLockFile> lock;
+};
+
+struct Recovery {
+  std::vector<Recovered> kept;
+  QStringList broken;  ///< why a copy cannot be read, and where it is now
 };
 
 /// Keeps a copy of the document in the user's data folder while it differs from its file, and
@@ -30,10 +37,13 @@ class Autosave : public QObject {
  public:
   explicit Autosave(Workspace& workspace, QObject* parent = nullptr);
   ~Autosave() override;
-  /// Copies left by windows that are no longer running; each is given once.
-  static std::vector<Recovered> recover();
-  /// Writes the copy now. Failing is reported once, not at every try.
-  void write();
+  /// Copies left by windows that are no longer running. They stay where they are; one that cannot
+  /// be read is renamed to NAME.broken, so that it is told of once and can still be looked into.
+  static Recovery recover();
+  /// Deletes a copy for good.
+  static void discard(const Recovered& recovered);
+  /// Writes the copy now; whether it is on the disk. Failing is reported once, not at every try.
+  bool write();
   void remove();
 
  private:

@@ -1,5 +1,5 @@
-// The status bar's right end: what runs, how far it is, how long it still takes, and a button that
-// stops it.
+// The status bar's right end: what runs, how far it is, how long it still takes, and buttons that
+// list the jobs and stop them.
 #pragma once
 
 #include <QWidget>
@@ -19,10 +19,12 @@ class JobBar : public QWidget {
 
  private:
   void refresh();
+  void showList();
 
   JobQueue& m_jobs;
   QLabel* m_text;
   QProgressBar* m_bar;
+  QToolButton* m_list;
   QToolButton* m_cancel;
 };
 

@@ -1,5 +1,6 @@
 #include "shell/jobs.h"
 
+#include <QPointer>
 #include <algorithm>
 #include <chrono>
 
@@ -15,6 +16,8 @@ struct JobQueue::Entry {
   QString title;
   Job::Work work;
   std::function<void()> done;
+  bool hasContext = false;
+  QPointer<const QObject> context;
   std::unique_ptr<Job> job;  ///< null while waiting
   Clock::time_point begin;
 };
@@ -26,13 +29,16 @@ JobQueue::JobQueue(QObject* parent) : QObject(parent) {
 
 JobQueue::~JobQueue() = default;
 
-int JobQueue::start(Lane lane, const QString& title, Job::Work work, std::function<void()> done) {
+int JobQueue::start(Lane lane, const QString& title, Job::Work work, std::function<void()> done,
+                    const QObject* context) {
   auto entry = std::make_unique<Entry>();
   entry->id = m_nextId++;
   entry->lane = lane;
   entry->title = title;
   entry->work = std::move(work);
   entry->done = std::move(done);
+  entry->hasContext = context != nullptr;
+  entry->context = context;
   const int id = entry->id;
   m_entries.push_back(std::move(entry));
   startNext(lane);
@@ -65,9 +71,20 @@ void JobQueue::cancel(int id) {
   Q_EMIT changed();
 }
 
+void JobQueue::cancelLane(Lane lane) {
+  for (const auto& entry : m_entries)
+    if (entry->lane == lane) entry->done = {};
+  cancelWhere([lane](const Entry& entry) { return entry.lane == lane; });
+}
+
 void JobQueue::cancelAll() {
+  cancelWhere([](const Entry&) { return true; });
+}
+
+void JobQueue::cancelWhere(const std::function<bool(const Entry&)>& wanted) {
   std::vector<int> ids;
-  for (const auto& entry : m_entries) ids.push_back(entry->id);
+  for (const auto& entry : m_entries)
+    if (wanted(*entry)) ids.push_back(entry->id);
   // Backwards, so that no waiting job starts in the place of a stopped one.
   for (auto id = ids.rbegin(); id != ids.rend(); ++id) cancel(*id);
 }
@@ -85,7 +102,7 @@ bool JobQueue::idle() const {
 std::vector<JobStatus> JobQueue::jobs() const {
   std::vector<JobStatus> out;
   for (const auto& entry : m_entries) {
-    JobStatus status{.id = entry->id, .title = entry->title};
+    JobStatus status{.id = entry->id, .lane = entry->lane, .title = entry->title};
     if (entry->job) {
       const Job::Status running = entry->job->status();
       status.waiting = false;
@@ -119,7 +136,8 @@ void JobQueue::finish(size_t index) {
   const Job::Status status = entry->job->status();
   startNext(entry->lane);
   const bool successful = status.state == Job::State::Done;
-  if (successful && entry->done) entry->done();
+  const bool alive = !entry->hasContext || entry->context;
+  if (successful && entry->done && alive) entry->done();
   Q_EMIT ended(entry->id, successful);
   if (status.state == Job::State::Failed)
     Q_EMIT failed(entry->title, QString::fromStdString(status.error));

@@ -14,11 +14,13 @@
 namespace marey::gui {
 
 /// Jobs of one lane run one after the other, lanes side by side: models keep all cores busy, files
-/// can be read meanwhile.
-enum class Lane { Files, Models };
+/// can be read meanwhile, and what is written (which may take long and is not the window's to show)
+/// holds neither up.
+enum class Lane { Files, Models, Exports };
 
 struct JobStatus {
   int id = 0;
+  Lane lane = Lane::Models;
   QString title, message;
   double fraction = 0.0;
   bool waiting = true;   ///< for the lane's earlier jobs
@@ -35,9 +37,12 @@ class JobQueue : public QObject {
   /// Asks running work to stop and waits for it.
   ~JobQueue() override;
 
-  /// `done` is called after success only.
-  int start(Lane lane, const QString& title, Job::Work work, std::function<void()> done = {});
+  /// `done` is called after success only and, where a context is given, only while that lives.
+  int start(Lane lane, const QString& title, Job::Work work, std::function<void()> done = {},
+            const QObject* context = nullptr);
   void cancel(int id);
+  /// Also drops the results of jobs that have just ended.
+  void cancelLane(Lane lane);
   void cancelAll();
   /// Cancels everything and waits until the running work has ended.
   void stop();
@@ -54,6 +59,7 @@ class JobQueue : public QObject {
   void advance();
   void startNext(Lane lane);
   void finish(size_t index);
+  void cancelWhere(const std::function<bool(const Entry&)>& wanted);
 
   std::vector<std::unique_ptr<Entry>> m_entries;  ///< in the order of starting
   QTimer m_timer;

@@ -1,11 +1,14 @@
 #include "shell/main_window.h"
 
+#include <QAbstractSpinBox>
 #include <QAction>
 #include <QApplication>
 #include <QCloseEvent>
 #include <QFileInfo>
+#include <QLineEdit>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QPlainTextEdit>
 #include <QSettings>
 #include <QStatusBar>
 
@@ -112,6 +115,9 @@ void MainWindow::refreshTitle() {
   setWindowTitle(name + QStringLiteral("[*] – Marey"));
   setWindowModified(m_workspace.modified());
   const auto& history = m_workspace.history();
+  const bool natural = !m_workspace.experiment().natural.empty();
+  m_report->setEnabled(natural);
+  m_reload->setEnabled(natural);
   m_undo->setEnabled(history.canUndo());
   m_redo->setEnabled(history.canRedo());
   m_undo->setText(history.canUndo()
@@ -132,9 +138,27 @@ void MainWindow::showError(const QString& title, const QString& error) {
     box->setModal(false);
     box->setTextInteractionFlags(Qt::TextSelectableByMouse);
   }
-  box->setText(tr("%1 did not work.").arg(title));
-  box->setInformativeText(error);
+  // What is still being read is not taken away.
+  const bool first = !box->isVisible();
+  box->setText(first ? tr("%1 did not work.").arg(title) : tr("Several things did not work."));
+  box->setInformativeText(first ? error
+                                : box->informativeText() + QStringLiteral("\n\n") + title +
+                                      QStringLiteral(": ") + error);
   box->show();
+}
+
+bool MainWindow::event(QEvent* event) {
+  // Esc in a field of text means the field, not the work in the background.
+  if (event->type() == QEvent::ShortcutOverride &&
+      static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) {
+    const QWidget* at = QApplication::focusWidget();
+    if (qobject_cast<const QLineEdit*>(at) || qobject_cast<const QAbstractSpinBox*>(at) ||
+        qobject_cast<const QPlainTextEdit*>(at) || qobject_cast<const QTextEdit*>(at)) {
+      event->accept();
+      return true;
+    }
+  }
+  return QMainWindow::event(event);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

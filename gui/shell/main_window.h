@@ -24,13 +24,17 @@ class MainWindow : public QMainWindow {
   MainWindow(Workspace& workspace, const std::vector<PanelSpec>& panels);
   ~MainWindow() override;
 
+  /// What the program does first: offers unsaved work, then opens `files`, the demo without any.
+  void start(const QStringList& files);
   /// Opens a document, or adds motion files and models to the present one, by what they are.
   /// Errors are shown; nothing is lost.
   void openFiles(const QStringList& files);
   void setTheme(Theme theme);
   Theme theme() const { return m_theme; }
-  /// Every command, for the palette and the key sheet.
+  /// Every command of the menus.
   const std::vector<QAction*>& commands() const { return m_commands; }
+  /// Those and the panels' own with a key, for the palette and the key sheet.
+  std::vector<QAction*> allCommands() const;
   QAction* command(const QString& name) const;  ///< by objectName; null without one
   /// A command of something the window does not know, at the end of the menu of that title (of
   /// File: before Quit), which is made where there is none.
@@ -44,6 +48,7 @@ class MainWindow : public QMainWindow {
   void offerRecovery();
 
  protected:
+  bool event(QEvent* event) override;
   void closeEvent(QCloseEvent* event) override;
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
@@ -62,6 +67,7 @@ class MainWindow : public QMainWindow {
   void refreshRecent();
   void open(const QString& file);
   void openDemo();
+  void openNew();
   bool save();
   bool saveAs();
   /// Asks about unsaved changes; false: stay.
@@ -69,6 +75,8 @@ class MainWindow : public QMainWindow {
   void writeReport();
   void addMotionFiles();
   void addModels();
+  void addModelFiles(const std::vector<std::string>& files);
+  void openRecovered(const Recovered& recovered);
   void showError(const QString& title, const QString& error);
   void showKeys();
   void showPalette();
@@ -80,6 +88,8 @@ class MainWindow : public QMainWindow {
   std::vector<QAction*> m_commands;
   QAction* m_undo = nullptr;
   QAction* m_redo = nullptr;
+  QAction* m_report = nullptr;
+  QAction* m_reload = nullptr;
   QMenu* m_recent = nullptr;
   QByteArray m_firstLayout;
   std::function<void(const QStringList&)> m_importer;

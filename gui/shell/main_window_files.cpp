@@ -1,9 +1,12 @@
 // Commands that read and write files.
 #include <QFileDialog>
+#include <QFileInfo>
 #include <QMessageBox>
+#include <QPushButton>
 #include <QStatusBar>
 
 #include "families.h"
+#include "shell/file_dialogs.h"
 #include "shell/main_window.h"
 
 #include "base/error.h"
@@ -14,6 +17,16 @@
 #include "report/report.h"
 
 namespace marey::gui {
+
+void MainWindow::start(const QStringList& files) {
+  offerRecovery();
+  if (files.isEmpty() && !m_workspace.modified()) openDemo();
+  if (!files.isEmpty()) openFiles(files);
+}
+
+void MainWindow::openNew() {
+  if (mayDiscard()) m_workspace.open({}, {});
+}
 
 void MainWindow::openDemo() {
   if (!mayDiscard()) return;
@@ -54,10 +67,9 @@ bool MainWindow::save() {
 }
 
 bool MainWindow::saveAs() {
-  QString file = QFileDialog::getSaveFileName(this, tr("Save the experiment"), m_workspace.file(),
-                                              tr("Experiments (*.json)"));
+  const QString file = askSaveFile(this, tr("Save the experiment"), m_workspace.file(),
+                                   tr("Experiments (*.json)"), QStringLiteral("json"));
   if (file.isEmpty()) return false;
-  if (!file.endsWith(QStringLiteral(".json"))) file += QStringLiteral(".json");
   try {
     m_workspace.save(file);
   } catch (const Error& error) {
@@ -79,19 +91,36 @@ bool MainWindow::mayDiscard() {
 }
 
 void MainWindow::offerRecovery() {
-  for (Recovered& one : Autosave::recover()) {
+  const Recovery found = Autosave::recover();
+  for (const QString& fault : found.broken) showError(tr("Recovering unsaved work"), fault);
+  size_t asked = 0;
+  for (const Recovered& one : found.kept) {
+    ++asked;
     const QString name =
         one.file.isEmpty() ? QString::fromStdString(one.experiment.title) : one.file;
-    const auto answer = QMessageBox::question(
-        this, tr("Unsaved work"),
-        tr("Marey ended without saving “%1” (last change %2). Open what was kept?")
-            .arg(name, one.when));
-    if (answer != QMessageBox::Yes) continue;
-    const Experiment kept = one.experiment;
-    m_workspace.open({.folder = kept.folder}, one.file);
-    m_workspace.edit(tr("Recover unsaved work"), [&](Experiment& e) { e = kept; });
-    return;
+    QMessageBox box(QMessageBox::Question, tr("Unsaved work"),
+                    tr("Marey ended without saving “%1” (last change %2). Open what was kept?")
+                        .arg(name, one.when),
+                    QMessageBox::Open | QMessageBox::Discard | QMessageBox::Cancel, this);
+    box.setObjectName(QStringLiteral("recoveryBox"));
+    box.button(QMessageBox::Cancel)->setText(tr("Ask again next time"));
+    const int answer = box.exec();
+    if (answer == QMessageBox::Discard) Autosave::discard(one);
+    if (answer != QMessageBox::Open) continue;
+    openRecovered(one);
+    break;
   }
+  if (asked < found.kept.size())
+    statusBar()->showMessage(tr("More unsaved work is kept (%1): Marey asks about it at its next "
+                                "start.")
+                                 .arg(found.kept.size() - asked));
+}
+
+void MainWindow::openRecovered(const Recovered& recovered) {
+  m_workspace.open({.folder = recovered.experiment.folder}, recovered.file);
+  m_workspace.edit(tr("Recover unsaved work"), [&](Experiment& e) { e = recovered.experiment; });
+  // Until there is another copy, this is the only one.
+  if (m_autosave->write()) Autosave::discard(recovered);
 }
 
 void MainWindow::addMotionFiles() {
@@ -106,34 +135,50 @@ void MainWindow::addModels() {
 
 void MainWindow::openFiles(const QStringList& files) {
   std::vector<std::string> motions, models;
-  for (const QString& file : files) {
-    const std::string path = file.toStdString();
+  for (const QString& given : files) {
+    // Whole, since the document may be saved elsewhere.
+    const QString file = QFileInfo(given).absoluteFilePath();
     if (file.endsWith(QStringLiteral(".json"))) return open(file);
     if (file.endsWith(QStringLiteral(".marey")))
-      models.push_back(path);
+      models.push_back(file.toStdString());
     else
-      motions.push_back(path);
+      motions.push_back(file.toStdString());
   }
-  if (!models.empty())
-    m_workspace.edit(tr("Add models"), [&](Experiment& e) {
-      for (const std::string& file : models) {
-        m_workspace.model(file);  // what is no model is refused here
-        addSystem(e, file, std::filesystem::path(file).stem().string());
-      }
-    });
+  if (!models.empty()) addModelFiles(models);
   if (!motions.empty() && m_importer) {
     QStringList names;
     for (const std::string& file : motions) names += QString::fromStdString(file);
     m_importer(names);
   } else if (!motions.empty()) {
     m_workspace.edit(tr("Add natural motion"), [&](Experiment& e) {
-      for (const std::string& file : motions)
-        if (!std::filesystem::is_directory(file) && !io::isMotionFile(file))
+      for (const std::string& file : motions) {
+        std::error_code none;
+        if (!std::filesystem::is_directory(file, none) && !io::isMotionFile(file))
           throw InputError({.path = file}, "an experiment, a model or a motion file",
                            "something else");
+      }
       addNatural(e, motions);
     });
   }
+}
+
+void MainWindow::addModelFiles(const std::vector<std::string>& files) {
+  m_workspace.jobs().start(
+      Lane::Files, tr("Adding models"),
+      [workspace = &m_workspace, files](Progress& progress) {
+        for (size_t i = 0; i < files.size(); ++i) {
+          progress.throwIfCancelled();
+          workspace->model(files[i]);  // what is no model is refused here
+          progress.report(static_cast<double>(i + 1) / static_cast<double>(files.size()), files[i]);
+        }
+      },
+      [this, files] {
+        m_workspace.edit(tr("Add models"), [&](Experiment& e) {
+          for (const std::string& file : files)
+            addSystem(e, file, std::filesystem::path(file).stem().string());
+        });
+      },
+      this);
 }
 
 void MainWindow::writeReport() {
@@ -143,7 +188,7 @@ void MainWindow::writeReport() {
   const Experiment document = m_workspace.experiment();
   const std::string out = folder.toStdString();
   m_workspace.jobs().start(
-      Lane::Models, tr("Writing the report"),
+      Lane::Exports, tr("Writing the report"),
       [document, out](Progress& progress) {
         Progress running = progress.part(0.0, 0.7), drawing = progress.part(0.7, 0.8),
                  writing = progress.part(0.8, 1.0);
@@ -151,7 +196,8 @@ void MainWindow::writeReport() {
         const auto data = report::reportOf(result, "marey report", drawing);
         report::writeReport(data, out, writing);
       },
-      [this, folder] { statusBar()->showMessage(tr("Report written to %1").arg(folder), 8000); });
+      [this, folder] { statusBar()->showMessage(tr("Report written to %1").arg(folder), 8000); },
+      this);
 }
 
 }  // namespace marey::gui

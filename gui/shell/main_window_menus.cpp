@@ -63,6 +63,7 @@ void MainWindow::buildMenus() {
 
 void MainWindow::buildFileMenu() {
   QMenu* menu = menuBar()->addMenu(tr("&File"));
+  add(menu, "new", tr("New experiment"), QKeySequence::New, [this] { openNew(); });
   add(menu, "openDemo", tr("Open the demo experiment"), {}, [this] { openDemo(); });
   add(menu, "open", tr("Open…"), QKeySequence::Open, [this] { open({}); });
   m_recent = menu->addMenu(tr("Open recent"));
@@ -70,10 +71,12 @@ void MainWindow::buildFileMenu() {
   menu->addSeparator();
   add(menu, "addMotion", tr("Add natural motion…"), tr("Ctrl+I"), [this] { addMotionFiles(); });
   add(menu, "addModel", tr("Add models…"), tr("Ctrl+M"), [this] { addModels(); });
+  m_reload = add(menu, "reloadNatural", tr("Reload natural motion"), tr("F5"),
+                 [this] { m_workspace.readNatural(); });
   menu->addSeparator();
   add(menu, "save", tr("Save"), QKeySequence::Save, [this] { save(); });
   add(menu, "saveAs", tr("Save as…"), tr("Ctrl+Shift+S"), [this] { saveAs(); });
-  add(menu, "report", tr("Write the report…"), tr("Ctrl+R"), [this] { writeReport(); });
+  m_report = add(menu, "report", tr("Write the report…"), tr("Ctrl+R"), [this] { writeReport(); });
   menu->addSeparator();
   add(menu, "quit", tr("Quit"), QKeySequence::Quit, [this] { close(); });
 }
@@ -98,10 +101,10 @@ void MainWindow::buildEditMenu() {
 
 void MainWindow::buildSampleMenu() {
   QMenu* menu = menuBar()->addMenu(tr("&Sample"));
-  add(menu, "sample", tr("Sample all models along the path"), tr("Ctrl+Return"),
+  add(menu, "sample", tr("Sample the models along the path"), tr("Ctrl+Return"),
       [this] { m_workspace.sampleCurrentPath(); });
-  add(menu, "cancel", tr("Cancel background work"), tr("Esc"),
-      [this] { m_workspace.jobs().cancelAll(); });
+  add(menu, "cancel", tr("Cancel reading, sampling and plotting"), tr("Esc"),
+      [this] { m_workspace.cancelWork(); });
 }
 
 void MainWindow::buildViewMenu() {
@@ -134,10 +137,22 @@ void MainWindow::buildHelpMenu() {
 }
 
 void MainWindow::showPalette() {
-  auto* palette = new CommandPalette(m_commands, this);
+  auto* palette = new CommandPalette(allCommands(), this);
   palette->setAttribute(Qt::WA_DeleteOnClose);
   palette->move(mapToGlobal(QPoint((width() - palette->width()) / 2, 60)));
   palette->show();
+}
+
+std::vector<QAction*> MainWindow::allCommands() const {
+  std::vector<QAction*> out = m_commands;
+  for (const auto& [id, dock] : m_panels) {
+    for (QAction* action : dock->widget()->findChildren<QAction*>()) {
+      if (action->shortcut().isEmpty() || action->text().isEmpty()) continue;
+      action->setProperty("menu", dock->windowTitle());
+      out.push_back(action);
+    }
+  }
+  return out;
 }
 
 void MainWindow::showKeys() {
@@ -148,7 +163,7 @@ void MainWindow::showKeys() {
                 "style='padding:3px 0'>%2</td></tr>")
                 .arg(keys.toHtmlEscaped(), what.toHtmlEscaped());
   };
-  for (const QAction* action : m_commands)
+  for (const QAction* action : allCommands())
     if (!action->shortcut().isEmpty())
       row(action->shortcut().toString(QKeySequence::NativeText), action->text().remove(u'&'));
   // Keys that panels handle themselves say so in their "keys" property.

@@ -18,6 +18,7 @@ struct Motion {
   std::optional<ClipScore>
       score;  ///< of a sample under its own model; natural clips: see Workspace
   bool visible = true;
+  std::string source = {};  ///< of natural motion: the document's name for where it comes from
 };
 
 /// The natural clips, or the motions of one sample set.
@@ -26,7 +27,7 @@ struct MotionGroup {
   std::string name;
   std::string system;    ///< of the document; empty for natural motion
   int colourIndex = -1;  ///< of render::colourOf; -1: natural motion
-  bool pinned = false;   ///< kept when its system and path are sampled again
+  bool pinned = false;   ///< never replaced by sampling again
   bool complete = true;  ///< false while motions are being added
   std::optional<SampleRecipe> recipe;
   std::string modelHash;

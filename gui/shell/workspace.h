@@ -9,11 +9,12 @@
 #include <memory>
 
 #include "shell/jobs.h"
+#include "shell/model_cache.h"
 #include "shell/motions.h"
 
 #include "experiment/document.h"
 #include "experiment/history.h"
-#include "model/motion_model.h"
+#include "experiment/run.h"
 
 namespace marey::gui {
 
@@ -27,8 +28,9 @@ class Workspace : public QObject {
   // The document.
   const Experiment& experiment() const { return m_history.state(); }
   const History<Experiment>& history() const { return m_history; }
-  /// Changes a copy and commits it under `label`; with `amend`, goes on with the last edit of that
-  /// label (dragging). An exception of `change` is shown and leaves the document as it was.
+  /// Changes a copy and commits it under `label`; with `amend`, goes on with the last edit where
+  /// that has the label and changed the same thing (dragging). The document stays as it was, and
+  /// the reason is shown, where `change` throws or its result could not be opened once saved.
   void edit(const QString& label, const std::function<void(Experiment&)>& change,
             bool amend = false);
   void undo();
@@ -53,7 +55,11 @@ class Workspace : public QObject {
   int systemIndex(const std::string& name) const;
   void setVisible(int group, bool visible);
   void setVisible(const MotionId& id, bool visible);
+  void setVisible(const std::vector<MotionId>& ids, bool visible);
+  /// Hides all others.
+  void showOnly(const std::set<MotionId>& shown);
   void setPinned(int group, bool pinned);
+  /// Also ends the drawing of its motions.
   void removeGroup(int group);
   /// A group that was made elsewhere (a steered motion); returns the id that it gets.
   int addGroup(MotionGroup group);
@@ -66,18 +72,28 @@ class Workspace : public QObject {
   std::shared_ptr<const Skeleton> skeleton() const;  ///< of the first motion; null without motions
 
   // Work in the background. Results come by signals, errors by JobQueue::failed.
+  /// Reads all natural sources again; what cannot be read is reported, the rest is shown.
   void readNatural();
-  /// Draws the recipe again where `replace` names its group. The colour is that of the recipe's
-  /// system in the document, or `colourIndex` where it is none of them.
+  /// Draws a recipe. `replaceGroup`, unless pinned, stays until the first motions are there. The
+  /// colour is that of the recipe's system in the document, or `colourIndex` where it is none.
   void sample(const SampleRecipe& recipe, int replaceGroup = -1, int colourIndex = 0);
-  /// All systems along the current path with the document's settings.
+  /// The chosen systems along the current path with the document's settings.
   void sampleCurrentPath();
+  /// Whether sampleCurrentPath takes a system; at first it takes all.
+  bool sampled(const std::string& system) const { return !m_leftOut.contains(system); }
+  void setSampled(const std::string& system, bool sampled);
+  bool sampling() const { return !m_drawings.empty(); }
+  void cancelSampling();
+  /// Ends reading, sampling and plotting; what is being written goes on.
+  void cancelWork();
   /// Log-likelihoods of the natural clips under a system, once. Null until they are there, which
   /// naturalScoresChanged tells.
   const std::vector<ClipScore>* naturalScores(const std::string& system) const;
   void scoreNatural(const std::string& system);
   /// Loads a model once per file content; callable from any thread.
-  std::shared_ptr<const MotionModel> model(const std::string& file) const;
+  std::shared_ptr<const MotionModel> model(const std::string& file) const {
+    return m_models->model(file);
+  }
   std::string modelFile(const ExperimentSystem& system) const;
   JobQueue& jobs() { return m_jobs; }
 
@@ -100,7 +116,7 @@ class Workspace : public QObject {
   void documentChanged();
   void documentOpened();  ///< another one, before documentChanged
   void currentPathChanged();
-  void motionsChanged();     ///< groups or their motions
+  void motionsChanged();     ///< groups or their motions, or how the document measures them
   void visibilityChanged();  ///< after motionsChanged too
   void naturalScoresChanged();
   void selectionChanged();
@@ -109,13 +125,28 @@ class Workspace : public QObject {
   void errorReported(const QString& title, const QString& error);
 
  private:
-  struct ModelCache;
+  /// A group whose motions are being drawn.
+  struct Drawing {
+    int job = -1;
+    std::vector<int> replaces;  ///< groups that go when the first motions are there
+    std::shared_ptr<std::string> modelHash;
+  };
   void documentMoved(const Experiment& before);
+  /// Motions of a system that was only renamed stay its own.
+  void followRenamed(const Experiment& before);
+  bool recolour();
+  void takeNatural(NaturalMotion natural);
+  void jobEnded(int job, bool successful);
+  /// Draws the motions of a group and hands them over as they come.
+  Job::Work drawingWork(const SampleRecipe& recipe, int group);
   void addMotions(int group, const std::vector<RootFrame>& wanted,
                   std::vector<SampledMotion> motions);
-  void finishGroup(int group, const std::string& modelHash, bool successful);
+  void finishGroup(int group, const Drawing& drawing, bool successful);
+  void dropReplaced(const std::vector<int>& groups);
   MotionGroup* findGroup(int id);
   void dropSelectionOf(int group);
+  void tellMotions();
+  void tellVisibility();
 
   JobQueue& m_jobs;
   History<Experiment> m_history;
@@ -123,9 +154,12 @@ class Workspace : public QObject {
   QString m_file;
   int m_currentPath = 0;
   std::vector<MotionGroup> m_groups;
-  std::map<std::string, std::vector<ClipScore>> m_naturalScores;
-  std::set<std::string> m_scoring;
+  std::map<int, Drawing> m_drawings;                              ///< by group
+  std::map<std::string, std::vector<ClipScore>> m_naturalScores;  ///< by ModelCache::stampOf
+  std::map<std::string, int> m_scoring;                           ///< jobs, likewise
+  std::set<std::string> m_leftOut;                                ///< systems that are not sampled
   int m_naturalVersion = 0;  ///< counts readings, so that a late one is not taken
+  int m_naturalJob = -1;
   int m_nextGroup = 1;
   Selection m_selection;
   double m_time = 0.0;

@@ -1,8 +1,8 @@
 // Tests of a real window. Listing them needs no display.
-#include <QApplication>
 #include <QSurfaceFormat>
 #include <cstring>
 
+#include "shell/application.h"
 #include <QVTKOpenGLNativeWidget.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
   format.setSamples(0);
   QSurfaceFormat::setDefaultFormat(format);
-  QApplication application(argc, argv);
+  marey::gui::Application application(argc, argv);
   QApplication::setOrganizationName(QStringLiteral("Marey"));
   QApplication::setApplicationName(QStringLiteral("Marey"));
   return RUN_ALL_TESTS();

@@ -81,6 +81,9 @@ void WindowTest::openWindow() {
   m_window = std::make_unique<MainWindow>(*m_workspace, panels());
   m_window->resize(1500, 920);
   m_window->show();
+  // Shortcuts are those of the active window; without a window manager nobody makes it so.
+  m_window->activateWindow();
+  QApplication::setActiveWindow(m_window.get());
   settle();
 }
 

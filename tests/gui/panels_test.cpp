@@ -11,9 +11,9 @@ class EveryPanel : public WindowTest {
       SCOPED_TRACE(spec.id.toStdString() + ", " + state);
       QWidget* panel = m_window->showPanel(spec.id);
       ASSERT_NE(panel, nullptr);
-      settle(120);
-      EXPECT_TRUE(panel->isVisible());
-      EXPECT_TRUE(showsSomething(pictureOf(*panel)));
+      EXPECT_TRUE(waitUntil([&] { return panel->isVisible(); }, 5.0));
+      // Plots are worked out beside the event loop.
+      EXPECT_TRUE(waitUntil([&] { return showsSomething(pictureOf(*panel)); }, 15.0));
     }
     EXPECT_TRUE(m_errors.empty()) << m_errors.front();
   }

@@ -1,0 +1,30 @@
+// Weights that were read once, for all threads that draw or score with them.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "model/motion_model.h"
+
+namespace marey::gui {
+
+/// Thread-safe.
+class ModelCache {
+ public:
+  /// The model of a file as it is now. Throws FileError or InputError.
+  std::shared_ptr<const MotionModel> model(const std::string& file);
+  /// Differs for other files, and for a file that was written anew.
+  static std::string stampOf(const std::string& file);
+
+ private:
+  struct Entry {
+    std::string stamp;
+    std::shared_ptr<const MotionModel> model;
+  };
+  std::mutex m_mutex;
+  std::vector<Entry> m_entries;  ///< the one used last in front
+};
+
+}  // namespace marey::gui

@@ -1,0 +1,195 @@
+// Motions, selection and time.
+#include <algorithm>
+#include <cmath>
+
+#include "shell/workspace.h"
+
+#include "base/error.h"
+#include "stats/footsteps.h"
+
+namespace marey::gui {
+
+void Workspace::tellMotions() {
+  Q_EMIT motionsChanged();
+  tellVisibility();
+}
+
+void Workspace::tellVisibility() {
+  Q_EMIT visibilityChanged();
+  setTime(m_time);  // inside what is left
+}
+
+MotionGroup* Workspace::findGroup(int id) {
+  const auto found = std::find_if(m_groups.begin(), m_groups.end(),
+                                  [id](const MotionGroup& group) { return group.id == id; });
+  return found == m_groups.end() ? nullptr : &*found;
+}
+
+const MotionGroup* Workspace::group(int id) const {
+  return const_cast<Workspace*>(this)->findGroup(id);
+}
+
+const Motion* Workspace::motion(const MotionId& id) const {
+  const MotionGroup* owner = group(id.group);
+  if (owner == nullptr || id.index < 0 || id.index >= static_cast<int>(owner->motions.size()))
+    return nullptr;
+  return &owner->motions[static_cast<size_t>(id.index)];
+}
+
+/// A system of the document has the colour of its place there; others keep theirs unless a system
+/// needs it. Returns whether any changed.
+bool Workspace::recolour() {
+  const int systems = static_cast<int>(experiment().systems.size());
+  int free = systems;
+  for (const MotionGroup& group : m_groups) free = std::max(free, group.colourIndex + 1);
+  std::map<std::string, int> moved;  // sets of one system that is gone stay alike
+  bool changed = false;
+  for (MotionGroup& group : m_groups) {
+    if (group.natural()) continue;
+    int wanted = systemIndex(group.system);
+    if (wanted < 0) wanted = group.colourIndex;
+    if (systemIndex(group.system) < 0 && wanted < systems) {
+      const auto [at, added] = moved.emplace(group.system, free);
+      free += added ? 1 : 0;
+      wanted = at->second;
+    }
+    changed = changed || wanted != group.colourIndex;
+    group.colourIndex = wanted;
+  }
+  return changed;
+}
+
+void Workspace::setVisible(int id, bool visible) {
+  MotionGroup* group = findGroup(id);
+  if (group == nullptr) return;
+  for (Motion& motion : group->motions) motion.visible = visible;
+  tellVisibility();
+}
+
+void Workspace::setVisible(const MotionId& id, bool visible) {
+  setVisible(std::vector<MotionId>{id}, visible);
+}
+
+void Workspace::setVisible(const std::vector<MotionId>& ids, bool visible) {
+  bool changed = false;
+  for (const MotionId& id : ids) {
+    if (motion(id) == nullptr || motion(id)->visible == visible) continue;
+    findGroup(id.group)->motions[static_cast<size_t>(id.index)].visible = visible;
+    changed = true;
+  }
+  if (changed) tellVisibility();
+}
+
+void Workspace::showOnly(const std::set<MotionId>& shown) {
+  for (MotionGroup& group : m_groups)
+    for (size_t i = 0; i < group.motions.size(); ++i)
+      group.motions[i].visible = shown.contains({group.id, static_cast<int>(i)});
+  tellVisibility();
+}
+
+void Workspace::setPinned(int id, bool pinned) {
+  if (MotionGroup* group = findGroup(id)) {
+    group->pinned = pinned;
+    Q_EMIT motionsChanged();
+  }
+}
+
+void Workspace::removeGroup(int id) {
+  const auto drawing = m_drawings.find(id);
+  if (drawing != m_drawings.end()) {
+    const int job = drawing->second.job;
+    m_drawings.erase(drawing);
+    m_jobs.cancel(job);
+  }
+  dropSelectionOf(id);
+  if (std::erase_if(m_groups, [id](const MotionGroup& group) { return group.id == id; }) > 0)
+    tellMotions();
+}
+
+int Workspace::addGroup(MotionGroup group) {
+  group.id = m_nextGroup++;
+  const int id = group.id;
+  m_groups.push_back(std::move(group));
+  tellMotions();
+  return id;
+}
+
+void Workspace::setMotions(int id, std::vector<Motion> motions) {
+  MotionGroup* group = findGroup(id);
+  if (group == nullptr) return;
+  group->motions = std::move(motions);
+  tellMotions();
+}
+
+std::vector<MotionId> Workspace::visibleMotions() const {
+  std::vector<MotionId> out;
+  for (const MotionGroup& group : m_groups)
+    for (size_t i = 0; i < group.motions.size(); ++i)
+      if (group.motions[i].visible) out.push_back({group.id, static_cast<int>(i)});
+  return out;
+}
+
+std::shared_ptr<const Skeleton> Workspace::skeleton() const {
+  for (const MotionGroup& group : m_groups)
+    if (!group.motions.empty()) return group.motions.front().clip->skeleton;
+  return nullptr;
+}
+
+std::vector<int> Workspace::feet() const {
+  const auto body = skeleton();
+  if (!body) return {};
+  try {
+    return stats::feetOf(*body, experiment().feet);
+  } catch (const InputError&) {
+    return {};  // a skeleton without feet: nothing to count
+  }
+}
+
+void Workspace::dropSelectionOf(int group) {
+  Selection next = m_selection;
+  std::erase_if(next.motions, [group](const MotionId& id) { return id.group == group; });
+  select(std::move(next));
+}
+
+void Workspace::select(Selection selection) {
+  if (selection == m_selection) return;
+  m_selection = std::move(selection);
+  Q_EMIT selectionChanged();
+}
+
+double Workspace::duration() const {
+  double longest = 0.0;
+  for (const MotionGroup& group : m_groups)
+    for (const Motion& motion : group.motions)
+      if (motion.visible)
+        longest = std::max(longest, (motion.clip->frameCount() - 1) / motion.clip->fps);
+  return longest;
+}
+
+void Workspace::setTime(double seconds) {
+  const double next = std::clamp(seconds, 0.0, duration());
+  if (next == m_time) return;
+  m_time = next;
+  Q_EMIT timeChanged(next);
+}
+
+void Workspace::setRange(std::optional<TimeRange> range) {
+  if (range && !(range->endS > range->beginS)) range.reset();
+  if (range == m_range) return;
+  m_range = range;
+  Q_EMIT rangeChanged();
+}
+
+ClipPtr Workspace::clipInRange(const MotionId& id) const {
+  const Motion* found = motion(id);
+  if (found == nullptr) return nullptr;
+  if (!m_range) return found->clip;
+  const Clip& clip = *found->clip;
+  const int first = std::max(0, static_cast<int>(std::ceil(m_range->beginS * clip.fps - 1e-9)));
+  const int last = std::min(clip.frameCount(),
+                            static_cast<int>(std::floor(m_range->endS * clip.fps + 1e-9)) + 1);
+  if (first >= last) return nullptr;
+  return std::make_shared<const Clip>(sliceFrames(clip, first, last));
+}
+
+}  // namespace marey::gui

@@ -1,0 +1,209 @@
+// The experiment document: what is stored, edits, history, natural motion.
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "experiment/edits.h"
+#include "experiment/history.h"
+#include "experiment/run.h"
+
+namespace marey {
+namespace {
+
+namespace fs = std::filesystem;
+
+Experiment twoPaths() {
+  Experiment out;
+  out.natural = {"walker:2,2,1"};
+  out.systems = {{"MG", "a.marey", 1.0}, {"MG+", "b.marey", 1.0}};
+  out.paths = {{.name = "still", .path = "preset:still"},
+               {.name = "drawn",
+                .path = {},
+                .wayPoints = {{.x = 0, .z = 0, .timeS = {}, .speedMS = {}, .facing = {}},
+                              {.x = 0, .z = 2, .timeS = {}, .speedMS = {}, .facing = {}},
+                              {.x = 1, .z = 3, .timeS = {}, .speedMS = {}, .facing = {}}},
+                .seconds = 0.0}};
+  return out;
+}
+
+class InFolder : public ::testing::Test {
+ protected:
+  InFolder() {
+    std::string name = (fs::temp_directory_path() / "marey-document-XXXXXX").string();
+    m_folder = ::mkdtemp(name.data());
+  }
+  ~InFolder() override { fs::remove_all(m_folder); }
+  fs::path m_folder;
+};
+
+TEST(PathSeconds, AnyLengthThatIsSetCanBeReadBack) {
+  for (const double wanted : {-1.0, 0.0, 0.05, 0.1, 0.15, 0.2, 7.5}) {
+    for (const size_t path : {0U, 1U}) {
+      Experiment e = twoPaths();
+      setPathSeconds(e, path, wanted);
+      EXPECT_EQ(asStored(e), e) << wanted << " s";
+      EXPECT_TRUE(e.paths[path].seconds == 0.0 || e.paths[path].seconds >= 0.2) << wanted;
+    }
+  }
+}
+
+TEST(Start, IsTakenFromAClipOnly) {
+  Experiment e = twoPaths();
+  e.paths[0] = {.name = "clip", .path = "clip:walk.bvh", .startFromClip = true};
+  EXPECT_EQ(asStored(e), e);
+  EXPECT_TRUE(toJson(e)["paths"][0]["start"] == "clip");
+  EXPECT_FALSE(toJson(e)["paths"][1].contains("start"));
+  e.paths[0].path = "preset:still";
+  EXPECT_THROW(asStored(e), InputError);
+  Json document = toJson(twoPaths());
+  document["paths"][0]["start"] = "middle";
+  EXPECT_THROW(experimentFromJson(document, "test"), InputError);
+}
+
+TEST(Facing, IsTheSameAfterSavingAndOpening) {
+  for (int i = -1000; i <= 1000; ++i) {
+    Experiment e = twoPaths();
+    e.paths[1].wayPoints[0].facing = 0.00314159 * i;
+    const Experiment once = asStored(e);
+    EXPECT_EQ(asStored(once), once) << i;
+    EXPECT_NEAR(*once.paths[1].wayPoints[0].facing, 0.00314159 * i, 1e-14);
+  }
+}
+
+TEST(ChangedPlace, IsTheNarrowestValueThatHoldsAllChanges) {
+  const Experiment before = twoPaths();
+  Experiment after = before;
+  after.seed = 9;
+  EXPECT_EQ(changedPlace(before, after), "/seed");
+  after.samples = 9;
+  EXPECT_EQ(changedPlace(before, after), "");
+  after = before;
+  after.systems[1].temperature = 0.5;
+  EXPECT_EQ(changedPlace(before, after), "/systems/1/temperature");
+  after = before;
+  after.paths[1].wayPoints[2].x = 5.0;
+  EXPECT_EQ(changedPlace(before, after), "/paths/1/waypoints/2");
+  after.paths[1].wayPoints[2].z = 5.0;
+  EXPECT_EQ(changedPlace(before, after), "/paths/1/waypoints/2");
+}
+
+TEST(HistoryOfEdits, MergesOneDragOnly) {
+  History<int> history(0);
+  history.commit(1, "Move", "/a/1");
+  history.amend(2, "Move", "/a/1");
+  EXPECT_EQ(history.size(), 2U);
+  history.amend(3, "Move", "/a/2");
+  EXPECT_EQ(history.size(), 3U) << "another thing was moved";
+  history.amend(4, "Move", "/a/2/x");
+  EXPECT_EQ(history.size(), 3U) << "a part of the same thing";
+  history.amend(5, "Move", "/a/20");
+  EXPECT_EQ(history.size(), 4U) << "its name only begins alike";
+  history.seal();
+  history.amend(6, "Move", "/a/20");
+  EXPECT_EQ(history.size(), 5U) << "what was saved was overwritten";
+  history.undo();
+  history.redo();
+  history.amend(7, "Move", "/a/20");
+  EXPECT_EQ(history.size(), 6U) << "an edit that was gone back to was overwritten";
+}
+
+TEST_F(InFolder, ADocumentReadByARelativeNameKnowsItsWholeFolder) {
+  writeExperiment(m_folder / "x.json", twoPaths());
+  const fs::path here = fs::current_path();
+  fs::current_path(m_folder);
+  const Experiment read = readExperiment("x.json");
+  fs::current_path(here);
+  EXPECT_TRUE(read.folder.is_absolute());
+  EXPECT_TRUE(fs::equivalent(read.folder, m_folder));
+}
+
+TEST_F(InFolder, AFileThatVanishedCostsOnlyItsOwnClips) {
+  Experiment e = twoPaths();
+  e.folder = m_folder;
+  e.natural = {"walker:2,2,1", "gone.bvh", "walker:1,2,5"};
+  std::ofstream(m_folder / "noise.bvh") << "HIERARCHY\nno\n";
+  e.natural.emplace_back("noise.bvh");
+  Progress progress;
+  const NaturalMotion natural = readableNatural(e, progress);
+  ASSERT_EQ(natural.clips.size(), 3U);
+  EXPECT_EQ(natural.sources,
+            (std::vector<std::string>{"walker:2,2,1", "walker:2,2,1", "walker:1,2,5"}));
+  ASSERT_EQ(natural.faults.size(), 2U);
+  EXPECT_NE(natural.faults[0].find("gone.bvh"), std::string::npos) << natural.faults[0];
+  EXPECT_NE(natural.faults[1].find("noise.bvh"), std::string::npos) << natural.faults[1];
+  EXPECT_THROW(naturalClips(e, progress), Error) << "a report would leave clips out silently";
+}
+
+TEST(Running, WithoutNaturalMotionIsRefused) {
+  Experiment e = twoPaths();
+  e.natural.clear();
+  Progress progress;
+  EXPECT_THROW(runExperiment(e, {}, progress), InputError);
+}
+
+/// Runs `work` in another process; its exit status, or minus the signal that ended it.
+int inChild(const std::function<void()>& work, int killAfterMs = 0) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    work();
+    std::_Exit(0);
+  }
+  if (killAfterMs > 0) {
+    ::usleep(static_cast<useconds_t>(1000 * killAfterMs));
+    ::kill(child, SIGKILL);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+TEST_F(InFolder, AProcessKilledWhileSavingLeavesAWholeDocument) {
+  const fs::path file = m_folder / "x.json";
+  Experiment e = twoPaths();
+  writeExperiment(file, e);
+  for (int round = 0; round < 5; ++round) {
+    const int end = inChild(
+        [&] {
+          for (uint64_t seed = 2;; ++seed) {
+            e.seed = seed;
+            e.notes = std::string(100000 + seed % 7, 'x');
+            writeExperiment(file, e);
+          }
+        },
+        20 + 7 * round);
+    ASSERT_EQ(end, -SIGKILL);
+    EXPECT_NO_THROW(readExperiment(file));
+  }
+  EXPECT_GT(readExperiment(file).seed, 1U) << "nothing was ever saved";
+}
+
+TEST_F(InFolder, AFullDiskIsAnErrorAndLeavesTheOldDocument) {
+  const fs::path file = m_folder / "x.json";
+  writeExperiment(file, twoPaths());
+  constexpr int kRefused = 7;
+  const int end = inChild([&] {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{10000, 10000};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    Experiment e = twoPaths();
+    e.notes = std::string(100000, 'x');
+    try {
+      writeExperiment(file, e);
+    } catch (const FileError&) {
+      std::_Exit(kRefused);
+    }
+  });
+  EXPECT_EQ(end, kRefused);
+  EXPECT_EQ(readExperiment(file).notes, "");
+  EXPECT_EQ(std::distance(fs::directory_iterator(m_folder), fs::directory_iterator()), 1)
+      << "a half-written file was left";
+}
+
+}  // namespace
+}  // namespace marey

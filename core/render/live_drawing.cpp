@@ -129,7 +129,7 @@ void LiveScene::Internals::fillDecals() {
   for (size_t m = 0; m < motions.size(); ++m) {
     const Vec3 shift = aside ? tracks[m]->shift : Vec3::Zero();
     if (options.contactMarks && marksInPlace())
-      addRests(decalStrokes, tracks[m]->rests(), time, shift, shownColour(m, time));
+      addRests(decalStrokes, tracks[m]->rests(options.contacts), time, shift, shownColour(m, time));
     if (motions[m].highlighted && options.floor)
       addFootRing(decalStrokes, poseOf(m)[0], 0.42F, shownColour(m, time));
   }

@@ -14,6 +14,7 @@
 #include "render/bodies.h"
 #include "render/camera.h"
 #include "render/colours.h"
+#include "stats/footsteps.h"
 
 class vtkRenderer;
 
@@ -48,6 +49,7 @@ struct LiveOptions {
   std::vector<int> trailJoints = {};  ///< joints that draw a line behind them
   double trailS = 1.0;                ///< length of that line, seconds
   bool contactMarks = false;          ///< rings on the floor where feet have rested so far
+  stats::ContactRule contacts = {};   ///< what counts as rest
   bool floor = true;
   bool shadow = true;                 ///< only with the floor
   std::vector<RootFrame> path = {};   ///< line with arrows on the floor, world; empty: none

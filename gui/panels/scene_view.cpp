@@ -147,14 +147,12 @@ void SceneView::updateOptions() {
   options.ghostsS = m_settings.ghostFrames > 0
                         ? m_settings.ghostFrames / m_workspace.experiment().fps
                         : m_settings.ghostsS;
-  options.trailJoints = trailJoints(m_workspace, m_settings.trails);
   options.trailS = m_settings.trailS;
   options.contactMarks = m_settings.contacts;
   options.contacts = m_contacts.rule();
   options.shadow = m_settings.shadow;
   if (m_settings.path) options.path = m_path->frames();
   options.dark = isDark(palette());
-  options.highlightJoint = m_workspace.selection().joint;
   try {
     m_scene.setOptions(options);
   } catch (const Error& error) {

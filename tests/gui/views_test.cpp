@@ -88,6 +88,28 @@ TEST_F(Views, MarksOnTheFloorAreTheContactsOfTheTimeline) {
   }
 }
 
+TEST_F(Views, AJointIsTheSameByNameInBodiesOfAnotherOrder) {
+  Clip clip = *m_workspace->groups().front().motions.front().clip;
+  Skeleton body = *clip.skeleton;
+  const int joint = body.jointCount() - 1;
+  const std::string name = body.names.back();
+  std::swap(body.names[static_cast<size_t>(joint)], body.names[static_cast<size_t>(joint) - 1]);
+  clip.skeleton = std::make_shared<const Skeleton>(body);
+  addMotions({{std::make_shared<const Clip>(clip), {}, true}, {withoutHips(), {}, true}});
+  MotionColouring colouring(*m_workspace);
+  m_workspace->select({.joint = joint});
+  SceneSettings settings;
+  settings.trails = Trails::SelectedJoint;
+  const auto motions = sceneContent(*m_workspace, settings, colouring).motions;
+  ASSERT_GE(motions.size(), 3U);
+  EXPECT_EQ(motions.front().highlightJoint, joint);
+  EXPECT_EQ(motions.front().trailJoints, std::vector<int>{joint});
+  const auto& swapped = motions[motions.size() - 2];
+  EXPECT_EQ(swapped.highlightJoint, joint - 1);
+  EXPECT_EQ(swapped.trailJoints, std::vector<int>{joint - 1});
+  EXPECT_FALSE(motions.back().highlightJoint) << "no joint of this name";
+}
+
 TEST_F(Views, APickedBodyLightsUpItsCurveInEveryPlot) {
   m_workspace->sampleCurrentPath();
   ASSERT_TRUE(idle());

@@ -61,6 +61,10 @@ class PathPanel : public QWidget {
     m_speed = new PacePlot(QStringLiteral("pathSpeedPlot"), tr("Speed (m/s)"), 1.0, lower);
     m_turn = new PacePlot(QStringLiteral("pathTurnPlot"), tr("Turn rate (°/s)"),
                           180.0 / std::numbers::pi, lower);
+    m_source = new QLabel(lower);
+    m_source->setObjectName(QStringLiteral("pathRangeSource"));
+    m_source->setWordWrap(true);
+    layout->addWidget(m_source);
     layout->addWidget(m_speed, 1);
     layout->addWidget(m_turn, 1);
     return lower;
@@ -100,7 +104,18 @@ class PathPanel : public QWidget {
     m_turn->setValues(curve.turnRadS, curve.fps);
     m_speed->setNatural(natural ? std::optional(natural->speedMS) : std::nullopt);
     m_turn->setNatural(natural ? std::optional(natural->turnRadS) : std::nullopt);
+    m_source->setText(sourceText());
+    m_source->setVisible(natural.has_value());
     refreshTime();
+  }
+
+  QString sourceText() const {
+    const auto& natural = m_natural->range();
+    if (!natural) return {};
+    if (natural->model.empty())
+      return tr("Bands: the document's natural motions (pale: all, darker: 5 to 95 %)");
+    return tr("Bands: the training data of %1 (pale: 0.5 to 99.5 %, darker: 5 to 95 %)")
+        .arg(QString::fromStdString(natural->model));
   }
 
   void refreshTime() {
@@ -114,7 +129,7 @@ class PathPanel : public QWidget {
   NaturalPace* m_natural;
   PathView* m_view = nullptr;
   PacePlot *m_speed = nullptr, *m_turn = nullptr;
-  QLabel* m_problem = nullptr;
+  QLabel *m_problem = nullptr, *m_source = nullptr;
 };
 
 }  // namespace

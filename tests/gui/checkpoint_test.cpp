@@ -25,8 +25,8 @@ void writeRun(const fs::path& folder) {
     fs::create_directories(folder / "snapshots");
     fs::copy_file(result.last, folder / "snapshots" / fmt::format("step_{:07}.marey", step));
   }
+  // These are the last snapshot once more.
   fs::remove(folder / "best.marey");
-  // They are the last snapshot once more.
   fs::remove(folder / "last.marey");
 }
 
@@ -70,6 +70,22 @@ TEST_F(Checkpoints, HavePicturesThatSelectTheirMotions) {
     wanted.insert({groups[2].id, i});
   EXPECT_EQ(m_workspace->selection().motions, wanted);
   EXPECT_TRUE(m_errors.empty()) << m_errors.front();
+}
+
+TEST_F(Checkpoints, ThePathIsJudgedByTheTrainingDataOfAModelThatKnowsThem) {
+  m_window->showPanel("path");
+  auto* source = child<QLabel>(*m_window, "pathRangeSource");
+  const auto text = [&] { return source->text().toStdString(); };
+  ASSERT_TRUE(idle());
+  EXPECT_NE(text().find("natural motions"), std::string::npos) << text();
+  m_workspace->edit(QStringLiteral("Model"), [this](Experiment& e) {
+    e.systems.push_back({.name = "Tiny", .model = m_run + "/snapshots/step_0000002.marey"});
+  });
+  ASSERT_TRUE(idle());
+  EXPECT_NE(text().find("training data of Tiny"), std::string::npos) << text();
+  m_workspace->undo();
+  ASSERT_TRUE(idle());
+  EXPECT_NE(text().find("natural motions"), std::string::npos) << text();
 }
 
 }  // namespace

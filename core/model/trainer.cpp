@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "model/batches.h"
+#include "model/training_pace.h"
 #include "model/training_state.h"
 #include "model/weights.h"
 
@@ -138,6 +139,7 @@ class Run {
     auto [train, valid] = splitValidation(m_data.train, m_config.validationShare);
     if (!m_config.useReversed)
       std::erase_if(train, [](const FeatureSequence& s) { return s.name.ends_with("|reverse"); });
+    m_pace = trainingPace(train, fps);
     m_train.emplace(train, m_data.standardiser, window, hop, m_device);
     const int context = static_cast<int>(m_trainee.net->context());
     const int longHop = kEvaluationFrames;
@@ -319,6 +321,7 @@ class Run {
       info.provenance["valid_nats_per_frame"] = -valid * std::numbers::ln2 + shift;
     if (!std::isnan(test))
       info.provenance["test_nats_per_frame"] = -test * std::numbers::ln2 + shift;
+    info.provenance["training_pace"] = toJson(m_pace);
     info.provenance["bone_lengths_m"] = m_data.boneLengthsM;
     TensorFile file;
     storeCommon(info, file);
@@ -366,6 +369,7 @@ class Run {
   torch::Device m_device;
   Trainee m_trainee;
   std::optional<Batches> m_train, m_valid, m_test;
+  TrainingPace m_pace;
   std::optional<Adam> m_adam;
   TrainingState m_state;
   Json m_facts = Json::object();

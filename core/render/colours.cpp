@@ -1,5 +1,6 @@
 #include "render/colours.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -13,9 +14,21 @@ constexpr Colour fromHex(unsigned rgb) {
 }
 
 // Blue and vermillion first: the pair that stays furthest apart for every kind of vision.
-constexpr std::array<Colour, 6> systemColours = {fromHex(0x0072B2), fromHex(0xD55E00),
-                                                 fromHex(0x009E73), fromHex(0xCC79A7),
-                                                 fromHex(0xE69F00), fromHex(0x56B4E9)};
+// The same hues follow, each made lighter or darker, whichever keeps the twelve furthest apart
+// and all of them readable on white and on a dark background.
+constexpr std::array<Colour, 12> systemColours = {
+    fromHex(0x0072B2), fromHex(0xD55E00), fromHex(0x009E73), fromHex(0xCC79A7),
+    fromHex(0xE69F00), fromHex(0x56B4E9), fromHex(0xA6CEE4), fromHex(0xECB78C),
+    fromHex(0x8CD3C0), fromHex(0x663C54), fromHex(0xEFC159), fromHex(0x2F6380)};
+
+constexpr std::array<Colour, 9> viridis = {fromHex(0x440154), fromHex(0x472D7B), fromHex(0x3B528B),
+                                           fromHex(0x2C728E), fromHex(0x21918C), fromHex(0x28AE80),
+                                           fromHex(0x5EC962), fromHex(0xADDC30), fromHex(0xFDE725)};
+
+// Stages are the multiples of this from it on, so that an index next to one is a system again.
+constexpr int stageStep = 1000, stages = 64;
+// The ends of the scale are hard to see on black and on white.
+constexpr double firstStage = 0.12, lastStage = 0.88;
 }  // namespace
 
 Colour naturalColour() {
@@ -23,8 +36,21 @@ Colour naturalColour() {
 }
 
 Colour colourOf(int systemIndex) {
+  if (systemIndex >= stageStep && systemIndex % stageStep == 0)
+    return scaleColour(std::lerp(firstStage, lastStage,
+                                 static_cast<double>(systemIndex / stageStep - 1) / stages));
   const int count = static_cast<int>(systemColours.size());
   return systemColours[static_cast<size_t>(((systemIndex % count) + count) % count)];
+}
+
+int stageIndex(double share) {
+  return stageStep * (1 + static_cast<int>(std::lround(std::clamp(share, 0.0, 1.0) * stages)));
+}
+
+Colour scaleColour(double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * (viridis.size() - 1);
+  const auto k = std::min(static_cast<size_t>(at), viridis.size() - 2);
+  return mix(viridis[k], viridis[k + 1], at - static_cast<double>(k));
 }
 
 Colour grey(double lightness) {

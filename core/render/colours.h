@@ -14,8 +14,15 @@ struct Colour {
 /// Natural motion: near-black #222222.
 Colour naturalColour();
 /// System 0, 1, 2, ... of a comparison: the palette of Okabe and Ito (2008), "Color universal
-/// design", without black and yellow (too light on white); repeats after six.
+/// design", without black and yellow (too light on white), then the same hues lighter or darker;
+/// repeats after twelve.
 Colour colourOf(int systemIndex);
+/// For stages of one thing, such as checkpoints of a training: an index beyond those of systems
+/// that colourOf gives a colour of scaleColour, darker for an early stage (0) than for a late (1).
+int stageIndex(double share);
+/// 0..1 on a scale that is even to every kind of vision, from dark to light: viridis (van der Walt
+/// and Smith, 2015).
+Colour scaleColour(double share);
 /// Neutral ink for text, axes and grids; `lightness` 0 is black, 1 is white.
 Colour grey(double lightness);
 

@@ -1,10 +1,10 @@
-// Where feet rest: marks on the floor of a picture (not the footstep statistics, which sweep the
-// tolerance).
+// Where feet rest: marks on the floor of a picture.
 #pragma once
 
 #include <vector>
 
 #include "motion/clip.h"
+#include "stats/footsteps.h"
 
 namespace marey::render {
 
@@ -14,8 +14,7 @@ struct Rest {
   Vec3 place = Vec3::Zero();  ///< mean position, world metres
 };
 
-/// Times at which a contact joint (rolesOf) moves slower than `toleranceMS` over the floor for
-/// `shortestS` or longer; by joint, then by time.
-std::vector<Rest> feetAtRest(const Clip& clip, double toleranceMS = 0.25, double shortestS = 0.12);
+/// The contacts of a gait diagram with their places; by joint, then by time.
+std::vector<Rest> feetAtRest(const Clip& clip, const stats::ContactRule& rule);
 
 }  // namespace marey::render

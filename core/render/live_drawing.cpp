@@ -45,10 +45,9 @@ Colour LiveScene::Internals::shownColour(size_t motion, double timeS) const {
 
 void LiveScene::Internals::addHighlightBall(FigureStrokes& figures, size_t motion) {
   const auto pose = poseOf(motion);
-  if (!options.highlightJoint || *options.highlightJoint < 0 ||
-      *options.highlightJoint >= static_cast<int>(pose.size()))
-    return;
-  const Vec3& at = pose[static_cast<size_t>(*options.highlightJoint)];
+  const auto& joint = motions[motion].highlightJoint;
+  if (!joint || *joint < 0 || *joint >= static_cast<int>(pose.size())) return;
+  const Vec3& at = pose[static_cast<size_t>(*joint)];
   const float radius = 2.0F * tracks[motion]->shape().capsules.front().radiusTo;
   const bool thin = &figures == &lineFigures;
   const float size = thin ? 3.0F : radius;
@@ -90,13 +89,13 @@ void LiveScene::Internals::fillGhosts() {
 
 void LiveScene::Internals::fillTrails() {
   trailStrokes.clear();
-  if (options.trailJoints.empty() || !(options.trailS > 0.0)) return;
+  if (!(options.trailS > 0.0)) return;
   constexpr float halfPixels = 1.2F;
   for (size_t m = 0; m < motions.size(); ++m) {
     const Track& track = *tracks[m];
     const double now = std::clamp(time, 0.0, track.lastS());
     const double start = std::max(0.0, time - options.trailS);
-    for (const int joint : options.trailJoints) {
+    for (const int joint : motions[m].trailJoints) {
       if (joint < 0 || joint >= track.jointCount()) continue;
       Vec3 last = track.joint(start, joint, options.placement);
       // The corners keep their places while time goes on, so that the line does not tremble.
@@ -129,7 +128,7 @@ void LiveScene::Internals::fillDecals() {
   for (size_t m = 0; m < motions.size(); ++m) {
     const Vec3 shift = aside ? tracks[m]->shift : Vec3::Zero();
     if (options.contactMarks && marksInPlace())
-      addRests(decalStrokes, tracks[m]->rests(), time, shift, shownColour(m, time));
+      addRests(decalStrokes, tracks[m]->rests(options.contacts), time, shift, shownColour(m, time));
     if (motions[m].highlighted && options.floor)
       addFootRing(decalStrokes, poseOf(m)[0], 0.42F, shownColour(m, time));
   }

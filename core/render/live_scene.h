@@ -14,6 +14,7 @@
 #include "render/bodies.h"
 #include "render/camera.h"
 #include "render/colours.h"
+#include "stats/footsteps.h"
 
 class vtkRenderer;
 
@@ -27,6 +28,8 @@ struct LiveMotion {
   std::string label = {};
   /// One per frame of the clip (by log-likelihood, by speed), instead of `colour`; empty: none.
   std::vector<Colour> frameColours = {};
+  std::vector<int> trailJoints = {};                 ///< joints that draw a line behind them
+  std::optional<int> highlightJoint = std::nullopt;  ///< a ball on this joint
 };
 
 enum class Placement {
@@ -44,16 +47,15 @@ enum class LiveView { ThreeQuarter, Side, Front, Back, Top };
 struct LiveOptions {
   Placement placement = Placement::World;
   BodyDetail detail = BodyDetail::Auto;
-  double ghostsS = 0.0;               ///< paler figures every so many seconds; 0: none
-  std::vector<int> trailJoints = {};  ///< joints that draw a line behind them
-  double trailS = 1.0;                ///< length of that line, seconds
-  bool contactMarks = false;          ///< rings on the floor where feet have rested so far
+  double ghostsS = 0.0;              ///< paler figures every so many seconds; 0: none
+  double trailS = 1.0;               ///< length of the lines behind trailJoints, seconds
+  bool contactMarks = false;         ///< rings on the floor where feet have rested so far
+  stats::ContactRule contacts = {};  ///< what counts as rest
   bool floor = true;
-  bool shadow = true;                 ///< only with the floor
-  std::vector<RootFrame> path = {};   ///< line with arrows on the floor, world; empty: none
-  bool dark = false;                  ///< background
-  std::optional<int> highlightJoint;  ///< a ball on this joint of every motion
-  double gridM = 0.5;                 ///< floor cells, metres; every metre is drawn stronger
+  bool shadow = true;                ///< only with the floor
+  std::vector<RootFrame> path = {};  ///< line with arrows on the floor, world; empty: none
+  bool dark = false;                 ///< background
+  double gridM = 0.5;                ///< floor cells, metres; every metre is drawn stronger
 };
 
 /// How a scene is seen, so that another one can be seen so.
@@ -94,11 +96,12 @@ class LiveScene {
   vtkRenderer* renderer() const;
 
   /// Throws InputError for a missing or invalid clip or a number of frameColours that is not that
-  /// of the frames, and leaves the scene as it was. Cheap for clips that were there before.
+  /// of the frames, and leaves the scene as it was. Joints that a skeleton does not have are left
+  /// out. Cheap for clips that were there before.
   void setMotions(std::vector<LiveMotion> motions);
   const std::vector<LiveMotion>& motions() const;
   /// Throws InputError for RootAligned where a skeleton has no hips, and leaves the scene as it
-  /// was. Joints that a skeleton does not have are left out.
+  /// was.
   void setOptions(LiveOptions options);
   const LiveOptions& options() const;
 

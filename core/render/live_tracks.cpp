@@ -33,8 +33,9 @@ Track::Track(std::shared_ptr<const Clip> clip)
   }
 }
 
-const std::vector<Rest>& Track::rests() const {
-  if (!m_rests) m_rests = feetAtRest(*m_clip);
+const std::vector<Rest>& Track::rests(const stats::ContactRule& rule) const {
+  if (!m_rests || m_restRule != rule) m_rests = feetAtRest(*m_clip, rule);
+  m_restRule = rule;
   return *m_rests;
 }
 

@@ -27,7 +27,7 @@ class Track {
   const Vec3& low() const { return m_low; }
   const Vec3& high() const { return m_high; }
   /// Times and places at which feet rest, world metres.
-  const std::vector<Rest>& rests() const;
+  const std::vector<Rest>& rests(const stats::ContactRule& rule) const;
   /// Throws InputError where the skeleton has no hips.
   void needRoots() const;
 
@@ -50,6 +50,7 @@ class Track {
   BodyShape m_shape;
   Vec3 m_low, m_high;
   mutable std::optional<std::vector<Rest>> m_rests;
+  mutable stats::ContactRule m_restRule;  ///< of m_rests
   mutable std::vector<RootFrame> m_roots;
 };
 

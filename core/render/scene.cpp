@@ -160,7 +160,7 @@ void SceneRenderer::Internals::buildFloor() {
     for (const Vec3& root : rootsOf(*motion.clip)) floorSpec.area.include(root.x(), root.z());
     if (!motion.contactMarks) continue;
     const Colour colour = withOpacity(motion.colour, std::max(0.35, motion.opacity));
-    for (const Rest& rest : feetAtRest(*motion.clip)) {
+    for (const Rest& rest : feetAtRest(*motion.clip, spec.contacts)) {
       floorSpec.marks.push_back({rest.place.x(), rest.place.z(), 0.055, colour});
     }
   }

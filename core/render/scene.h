@@ -13,6 +13,7 @@
 #include "render/camera.h"
 #include "render/colours.h"
 #include "render/image.h"
+#include "stats/footsteps.h"
 
 namespace marey::render {
 
@@ -34,7 +35,8 @@ struct SceneSpec {
   bool legend = true;    ///< systems by colour, where a name is given
   bool scaleBar = true;  ///< 1 m
   bool floor = true;
-  double gridM = 0.5;  ///< floor cells, metres; 0.5 or 1
+  double gridM = 0.5;                ///< floor cells, metres; 0.5 or 1
+  stats::ContactRule contacts = {};  ///< what contactMarks mark
 };
 
 /// Opacity of figures that stand for what a model does: the more of them, the fainter, so that one

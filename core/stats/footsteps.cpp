@@ -138,4 +138,14 @@ std::vector<ContactInterval> contactIntervals(const Clip& clip, const std::vecto
   return out;
 }
 
+std::vector<ContactInterval> contactIntervals(const Clip& clip, const ContactRule& rule) {
+  std::vector<int> feet;
+  try {
+    feet = feetOf(*clip.skeleton, rule.feet);
+  } catch (const InputError&) {
+    return {};
+  }
+  return contactIntervals(clip, feet, rule.toleranceCmS);
+}
+
 }  // namespace marey::stats

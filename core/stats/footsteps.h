@@ -31,6 +31,18 @@ struct ContactInterval {
   int joint = 0;
   int firstFrame = 0, lastFrame = 0;
   double seconds = 0.0;
+
+  /// The first slow step starts at the frame before.
+  double beginS(double fps) const { return (firstFrame - 1) / fps; }
+  double endS(double fps) const { return lastFrame / fps; }
+};
+
+/// What counts as a contact wherever single contacts are shown: gait diagrams and floor marks.
+struct ContactRule {
+  double toleranceCmS = 25.0;
+  std::string feet = {};  ///< as for feetOf
+
+  bool operator==(const ContactRule&) const = default;
 };
 
 /// The feet of a skeleton by joint names ("Foot_L,Foot_R"), or those found by its naming habit
@@ -43,6 +55,8 @@ FootstepCurve footstepCurve(const std::vector<Clip>& clips, const FootstepOption
 /// Contacts of one clip at a tolerance, foot by foot in time order: the rows of a gait diagram.
 std::vector<ContactInterval> contactIntervals(const Clip& clip, const std::vector<int>& feet,
                                               double toleranceCmS);
+/// By a rule; none where the skeleton has no feet of its names.
+std::vector<ContactInterval> contactIntervals(const Clip& clip, const ContactRule& rule);
 
 /// Horizontal speeds of a joint in cm/s; entry t-1 is that of frame t (one less than frames).
 std::vector<double> horizontalSpeedsCmS(const Clip& clip, int joint);

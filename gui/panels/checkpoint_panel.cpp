@@ -11,6 +11,7 @@
 #include <QVBoxLayout>
 #include <cmath>
 
+#include "panels/checkpoint_strip.h"
 #include "panels/loss_chart.h"
 #include "panels/paint_style.h"
 #include "panels/workspace_chart.h"
@@ -41,10 +42,13 @@ class CheckpointPanel : public QWidget {
                             {"training_run", m_folder->text().toStdString()}};
     };
     new ChartMenu(m_chart, std::move(out));
+    m_strip = new CheckpointStrip(workspace, this);
+    m_strip->setObjectName(QStringLiteral("checkpointStrip"));
     buildTable();
     // Side by side: docks are wide rather than high.
     auto* row = new QHBoxLayout;
     row->addWidget(m_chart, 1);
+    row->addWidget(m_strip, 1);
     row->addWidget(m_table, 1);
     layout->addLayout(row, 1);
     m_sample = new QPushButton(this);
@@ -54,8 +58,12 @@ class CheckpointPanel : public QWidget {
     connect(m_sample, &QPushButton::clicked, this, &CheckpointPanel::sampleAll);
     connect(m_chart, &LossChart::checkpointClicked, this,
             [this](int index) { m_table->selectRow(index); });
-    connect(m_table, &QTableWidget::itemSelectionChanged, this,
-            [this] { m_chart->setCurrent(m_table->currentRow()); });
+    connect(m_strip, &CheckpointStrip::checkpointClicked, this,
+            [this](int index) { m_table->selectRow(index); });
+    connect(m_table, &QTableWidget::itemSelectionChanged, this, [this] {
+      m_chart->setCurrent(m_table->currentRow());
+      m_strip->setCurrentRow(m_table->currentRow());
+    });
     connect(m_table, &QTableWidget::itemChanged, this, &CheckpointPanel::refreshButton);
     connect(&workspace, &Workspace::documentChanged, this, &CheckpointPanel::refreshButton);
     connect(&m_timer, &QTimer::timeout, this, [this] {
@@ -123,6 +131,7 @@ class CheckpointPanel : public QWidget {
       }
     }
     m_chart->setRun(m_run);
+    m_strip->setRun(m_run);
     fillTable();
   }
 
@@ -176,7 +185,6 @@ class CheckpointPanel : public QWidget {
   void sampleAll() {
     const Experiment& e = m_workspace.experiment();
     const ExperimentPath path = e.paths[static_cast<size_t>(m_workspace.currentPath())];
-    const auto systems = static_cast<int>(e.systems.size());
     for (const int row : marked()) {
       const Checkpoint& checkpoint = m_run.checkpoints[static_cast<size_t>(row)];
       SampleRecipe recipe;
@@ -192,13 +200,14 @@ class CheckpointPanel : public QWidget {
         if (group.recipe && !group.pinned && group.recipe->system.model == recipe.system.model &&
             group.recipe->path.name == path.name)
           old = group.id;
-      m_workspace.sample(recipe, old, systems + row);
+      m_workspace.sample(recipe, old, colourIndexOf(m_run, checkpoint));
     }
   }
 
   Workspace& m_workspace;
   QLineEdit* m_folder = nullptr;
   LossChart* m_chart = nullptr;
+  CheckpointStrip* m_strip = nullptr;
   QTableWidget* m_table = nullptr;
   QPushButton* m_sample = nullptr;
   QTimer m_timer;

@@ -22,13 +22,13 @@ std::vector<MotionId> GaitRows::shownMotions() const {
   return selected.empty() ? first : selected;
 }
 
-const GaitRows::Entry& GaitRows::entryOf(const ClipPtr& clip, double toleranceCmS) {
+const GaitRows::Entry& GaitRows::entryOf(const ClipPtr& clip) {
   Entry& entry = m_entries[clip.get()];
   if (entry.clip) return entry;
   entry.clip = clip;
   try {
-    entry.feet = stats::feetOf(*clip->skeleton, m_feet);
-    entry.contacts = stats::contactIntervals(*clip, entry.feet, toleranceCmS);
+    entry.feet = stats::feetOf(*clip->skeleton, m_rule.feet);
+    entry.contacts = stats::contactIntervals(*clip, entry.feet, m_rule.toleranceCmS);
   } catch (const Error&) {
     // A skeleton without feet of these names has no rows.
     entry.feet.clear();
@@ -36,11 +36,9 @@ const GaitRows::Entry& GaitRows::entryOf(const ClipPtr& clip, double toleranceCm
   return entry;
 }
 
-std::vector<GaitRow> GaitRows::rows(double toleranceCmS) {
-  const std::string& feet = m_workspace.experiment().feet;
-  if (toleranceCmS != m_toleranceCmS || feet != m_feet) m_entries.clear();
-  m_toleranceCmS = toleranceCmS;
-  m_feet = feet;
+std::vector<GaitRow> GaitRows::rows(const stats::ContactRule& rule) {
+  if (rule != m_rule) m_entries.clear();
+  m_rule = rule;
   std::vector<MotionId> shown = shownMotions();
   m_leftOut = shown.size() > kMostMotions ? static_cast<int>(shown.size() - kMostMotions) : 0;
   shown.resize(std::min(shown.size(), kMostMotions));
@@ -49,7 +47,7 @@ std::vector<GaitRow> GaitRows::rows(double toleranceCmS) {
   for (const MotionId& id : shown) {
     const MotionGroup& group = *m_workspace.group(id.group);
     const ClipPtr& clip = group.motions[static_cast<size_t>(id.index)].clip;
-    const Entry& entry = entryOf(clip, toleranceCmS);
+    const Entry& entry = entryOf(clip);
     used.insert(clip.get());
     for (size_t f = 0; f < entry.feet.size(); ++f) {
       const int joint = entry.feet[f];
@@ -61,8 +59,7 @@ std::vector<GaitRow> GaitRows::rows(double toleranceCmS) {
                   .first = f == 0};
       for (const auto& contact : entry.contacts)
         if (contact.joint == joint)
-          row.contacts.push_back(
-              {(contact.firstFrame - 1) / clip->fps, contact.lastFrame / clip->fps});
+          row.contacts.push_back({contact.beginS(clip->fps), contact.endS(clip->fps)});
       out.push_back(std::move(row));
     }
   }

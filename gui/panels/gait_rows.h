@@ -22,12 +22,12 @@ struct GaitRow {
   bool first = false;    ///< of its motion
 };
 
-/// Contacts are worked out once per clip and tolerance, and kept while the clip is shown.
+/// Contacts are worked out once per clip and rule, and kept while the clip is shown.
 class GaitRows {
  public:
   explicit GaitRows(const Workspace& workspace) : m_workspace(workspace) {}
   /// Of the selected motions that are visible, or of the first visible one of every group.
-  std::vector<GaitRow> rows(double toleranceCmS);
+  std::vector<GaitRow> rows(const stats::ContactRule& rule);
   /// Motions that the last call left out, because they are too many to tell apart.
   int leftOut() const { return m_leftOut; }
 
@@ -38,12 +38,11 @@ class GaitRows {
     std::vector<stats::ContactInterval> contacts;
   };
   std::vector<MotionId> shownMotions() const;
-  const Entry& entryOf(const ClipPtr& clip, double toleranceCmS);
+  const Entry& entryOf(const ClipPtr& clip);
 
   const Workspace& m_workspace;
   std::map<const Clip*, Entry> m_entries;
-  double m_toleranceCmS = -1.0;
-  std::string m_feet;
+  stats::ContactRule m_rule;  ///< of the entries
   int m_leftOut = 0;
 };
 

@@ -114,8 +114,8 @@ void LossChart::paintCheckpoints(QPainter& painter) const {
     painter.setPen(QPen(current ? inks.accent : inks.faintText, current ? 2 : 1, Qt::DashLine));
     painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()));
     painter.setPen(Qt::NoPen);
-    painter.setBrush(current ? inks.accent : inks.faintText);
-    painter.drawEllipse(QPointF(x, area.bottom()), 4, 4);
+    painter.setBrush(toQColor(render::colourOf(colourIndexOf(m_run, m_run.checkpoints[i]))));
+    painter.drawEllipse(QPointF(x, area.bottom()), current ? 6 : 5, current ? 6 : 5);
   }
 }
 

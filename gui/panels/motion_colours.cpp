@@ -1,7 +1,6 @@
 #include "panels/motion_colours.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,14 +13,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-constexpr render::Colour fromHex(unsigned rgb) {
-  return {((rgb >> 16) & 255U) / 255.0, ((rgb >> 8) & 255U) / 255.0, (rgb & 255U) / 255.0, 1.0};
-}
-
-constexpr std::array<render::Colour, 9> kViridis = {
-    fromHex(0x440154), fromHex(0x472d7b), fromHex(0x3b528b), fromHex(0x2c728e), fromHex(0x21918c),
-    fromHex(0x28ae80), fromHex(0x5ec962), fromHex(0xaddc30), fromHex(0xfde725)};
-
 std::vector<RootFrame> floorTrack(const Clip& clip) {
   if (rolesOf(*clip.skeleton).hasFacing()) return rootTrajectory(clip, FeatureSpec{});
   std::vector<RootFrame> out;
@@ -31,12 +22,6 @@ std::vector<RootFrame> floorTrack(const Clip& clip) {
 }
 
 }  // namespace
-
-render::Colour scaleColour(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * (kViridis.size() - 1);
-  const auto k = std::min(static_cast<size_t>(at), kViridis.size() - 2);
-  return render::mix(kViridis[k], kViridis[k + 1], at - static_cast<double>(k));
-}
 
 std::optional<ScaleRange> middleRange(std::vector<double> values) {
   values.erase(

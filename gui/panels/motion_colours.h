@@ -17,9 +17,8 @@ struct ScaleRange {
   double share(double value) const { return (value - low) / (high - low); }
 };
 
-/// Viridis: rises evenly in lightness for every kind of vision. 0 is dark blue, 1 yellow; values
-/// outside take the colour of the end.
-render::Colour scaleColour(double share);
+using render::scaleColour;
+
 /// 5 to 95 % of the finite values, never empty; none where no value is finite.
 std::optional<ScaleRange> middleRange(std::vector<double> values);
 /// NaN becomes grey.

@@ -18,8 +18,8 @@ PacePlot::PacePlot(const QString& name, const QString& title, double scale, QWid
   setAccessibleName(title);
   setFont(readableFont(font()));
   setToolTip(
-      tr("Dark band: 5 to 95 % of the natural motions; pale band: all of them. Orange: the "
-         "path leaves them."));
+      tr("Bands: speeds and turns that are known, the usual ones darker. Orange: the path "
+         "leaves them."));
 }
 
 void PacePlot::setValues(std::vector<double> values, double fps) {
@@ -134,7 +134,7 @@ void PacePlot::paintBands(QPainter& painter, const Inks& inks, const Frame& fram
     const double shown = value * m_scale;
     return QString::number(shown, 'f', std::abs(shown) >= 10.0 ? 0 : 2);
   };
-  const QString text = tr("natural %1 to %2").arg(number(m_natural->low), number(m_natural->high));
+  const QString text = tr("usual %1 to %2").arg(number(m_natural->low), number(m_natural->high));
   const int free = width() - fontMetrics().horizontalAdvance(m_title) - 4 * kMargin;
   painter.setPen(inks.faintText);
   painter.drawText(QRectF(width() - free - kMargin, 2, free, fontMetrics().height() + 2),

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/job.h"
@@ -25,6 +26,7 @@ struct PathCurve {
 };
 PathCurve curveOf(std::vector<RootFrame> frames, double fps);
 
+/// Of a model's training data, which may hold faults of capture, the outermost 0.5 % are left out.
 struct Spread {
   double minimum = 0.0, low = 0.0;   ///< low: 5 % of the values lie below
   double high = 0.0, maximum = 0.0;  ///< high: 5 % lie above
@@ -34,7 +36,8 @@ Spread spreadOf(std::vector<double> values);
 
 struct PaceRange {
   Spread speedMS, turnRadS;
-  size_t clips = 0;
+  size_t clips = 0;        ///< natural ones that were measured
+  std::string model = {};  ///< whose training data were measured instead; empty: none
 };
 /// Of the root trajectories of clips, smoothed as models see them. Clips of one frame, and those
 /// without hips, are left out; none where no clip is left. Throws CancelledError.

@@ -71,6 +71,10 @@ class PathPanel : public QWidget {
     for (PacePlot* plot : {m_speed, m_turn})
       new ChartMenu(plot,
                     chartOutOf(m_workspace, plot->objectName(), [plot] { return plot->chart(); }));
+    m_source = new QLabel(lower);
+    m_source->setObjectName(QStringLiteral("pathRangeSource"));
+    m_source->setWordWrap(true);
+    layout->addWidget(m_source);
     layout->addWidget(m_speed, 1);
     layout->addWidget(m_turn, 1);
     for (PacePlot* plot : {m_speed, m_turn}) plot->setMinimumHeight(kLeastPlotHeight);
@@ -117,7 +121,18 @@ class PathPanel : public QWidget {
     m_turn->setValues(curve.turnRadS, curve.fps);
     m_speed->setNatural(natural ? std::optional(natural->speedMS) : std::nullopt);
     m_turn->setNatural(natural ? std::optional(natural->turnRadS) : std::nullopt);
+    m_source->setText(sourceText());
+    m_source->setVisible(natural.has_value());
     refreshTime();
+  }
+
+  QString sourceText() const {
+    const auto& natural = m_natural->range();
+    if (!natural) return {};
+    if (natural->model.empty())
+      return tr("Bands: the document's natural motions (pale: all, darker: 5 to 95 %)");
+    return tr("Bands: the training data of %1 (pale: 0.5 to 99.5 %, darker: 5 to 95 %)")
+        .arg(QString::fromStdString(natural->model));
   }
 
   void refreshTime() {
@@ -131,7 +146,7 @@ class PathPanel : public QWidget {
   NaturalPace* m_natural;
   PathView* m_view = nullptr;
   PacePlot *m_speed = nullptr, *m_turn = nullptr;
-  QLabel* m_problem = nullptr;
+  QLabel *m_problem = nullptr, *m_source = nullptr;
 };
 
 }  // namespace

@@ -155,8 +155,12 @@ void PathView::paintLegend(QPainter& painter, const Inks& inks) const {
   const auto has = [this](Strain strain) {
     return std::find(m_strains.begin(), m_strains.end(), strain) != m_strains.end();
   };
-  if (has(Strain::Rare)) lines.push_back({Strain::Rare, tr("rare in natural motion")});
-  if (has(Strain::Unseen)) lines.push_back({Strain::Unseen, tr("beyond all natural motion")});
+  const QString data =
+      m_natural && !m_natural->model.empty()
+          ? tr("the training data of %1").arg(QString::fromStdString(m_natural->model))
+          : tr("the natural motion");
+  if (has(Strain::Rare)) lines.push_back({Strain::Rare, tr("rare in %1").arg(data)});
+  if (has(Strain::Unseen)) lines.push_back({Strain::Unseen, tr("beyond %1").arg(data)});
   if (lines.empty()) return;
   const QFontMetrics metrics = painter.fontMetrics();
   int wide = 0;

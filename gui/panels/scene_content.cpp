@@ -3,7 +3,9 @@
 #include <QCoreApplication>
 #include <algorithm>
 
+#include "base/error.h"
 #include "motion/roles.h"
+#include "stats/footsteps.h"
 
 namespace marey::gui {
 namespace {
@@ -69,6 +71,37 @@ void colourBySample(const Workspace& workspace, SceneContent& content) {
   }
 }
 
+/// The name of the selection's joint; empty without one.
+std::string selectedJoint(const Workspace& workspace) {
+  const auto& joint = workspace.selection().joint;
+  const auto skeleton = workspace.skeleton();
+  if (!joint || !skeleton || *joint < 0 || *joint >= skeleton->jointCount()) return {};
+  return skeleton->names[static_cast<size_t>(*joint)];
+}
+
+/// The feet of a body, or none.
+std::vector<int> feetOrNone(const Skeleton& body, const std::string& names) {
+  try {
+    return stats::feetOf(body, names);
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+/// Motions may have different bodies: a joint is the same where it has the same name.
+void markJoints(const Workspace& workspace, Trails trails, SceneContent& content) {
+  const std::string chosen = selectedJoint(workspace);
+  for (render::LiveMotion& motion : content.motions) {
+    const Skeleton& body = *motion.clip->skeleton;
+    const int joint = chosen.empty() ? -1 : body.find(chosen);
+    if (joint >= 0) motion.highlightJoint = joint;
+    if (trails == Trails::Feet)
+      motion.trailJoints = feetOrNone(body, workspace.experiment().feet);
+    else if (trails == Trails::SelectedJoint)
+      motion.trailJoints = {chosen.empty() ? rolesOf(body).hips : joint};
+  }
+}
+
 }  // namespace
 
 std::string naturalSystem(const Workspace& workspace, const SceneSettings& settings) {
@@ -83,14 +116,6 @@ QString motionLabel(const MotionGroup& group, int index) {
     return QString::fromStdString(motion.clip->name);
   return QStringLiteral("%1, %2 %3")
       .arg(QString::fromStdString(group.name), tr("sample"), QString::number(index + 1));
-}
-
-std::vector<int> trailJoints(const Workspace& workspace, Trails trails) {
-  if (trails == Trails::Off) return {};
-  if (trails == Trails::Feet) return workspace.feet();
-  if (workspace.selection().joint) return {*workspace.selection().joint};
-  const auto skeleton = workspace.skeleton();
-  return skeleton ? std::vector<int>{rolesOf(*skeleton).hips} : std::vector<int>{};
 }
 
 SceneContent sceneContent(const Workspace& workspace, const SceneSettings& settings,
@@ -118,6 +143,7 @@ SceneContent sceneContent(const Workspace& workspace, const SceneSettings& setti
   } else if (settings.colourBy != ColourBy::System) {
     colourByValue(workspace, settings, colouring, out);
   }
+  markJoints(workspace, settings.trails, out);
   return out;
 }
 

@@ -52,7 +52,5 @@ SceneContent sceneContent(const Workspace& workspace, const SceneSettings& setti
 std::string naturalSystem(const Workspace& workspace, const SceneSettings& settings);
 /// Title, unit and meaning for people; `index` is its number in the group.
 QString motionLabel(const MotionGroup& group, int index);
-/// Joints that draw trails.
-std::vector<int> trailJoints(const Workspace& workspace, Trails trails);
 
 }  // namespace marey::gui

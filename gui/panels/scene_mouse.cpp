@@ -130,7 +130,11 @@ void SceneView::pick(const QPointF& at, bool add) {
   if (add) selection = m_workspace.selection();
   // A second Ctrl-click on a motion takes it out again.
   if (!add || selection.motions.erase(id) == 0) selection.motions.insert(id);
-  selection.joint = hit->joint;
+  // The selection counts joints in the first motion's body, which may be another one.
+  const auto& names = m_content.motions[hit->motion].clip->skeleton->names;
+  const auto first = m_workspace.skeleton();
+  const int joint = first ? first->find(names[static_cast<size_t>(hit->joint)]) : -1;
+  selection.joint = joint >= 0 ? std::optional(joint) : std::nullopt;
   m_workspace.select(selection);
 }
 

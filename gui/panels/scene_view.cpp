@@ -22,7 +22,8 @@ SceneView::SceneView(Workspace& workspace, QWidget* parent)
       m_workspace(workspace),
       m_path(new CurrentPath(workspace, this)),
       m_tool(*m_path, m_scene),
-      m_colouring(new MotionColouring(workspace, this)) {
+      m_colouring(new MotionColouring(workspace, this)),
+      m_contacts(ContactTolerance::of(workspace)) {
   setObjectName(QStringLiteral("sceneView"));
   setMinimumSize(240, 180);
   setMouseTracking(true);
@@ -65,6 +66,7 @@ void SceneView::connectWorkspace() {
   });
   connect(m_colouring, &MotionColouring::changed, this, &SceneView::changeMotions);
   connect(m_path, &CurrentPath::changed, this, &SceneView::changeOptions);
+  connect(&m_contacts, &ContactTolerance::changed, this, &SceneView::changeOptions);
 }
 
 void SceneView::changeMotions() {
@@ -145,13 +147,12 @@ void SceneView::updateOptions() {
   options.ghostsS = m_settings.ghostFrames > 0
                         ? m_settings.ghostFrames / m_workspace.experiment().fps
                         : m_settings.ghostsS;
-  options.trailJoints = trailJoints(m_workspace, m_settings.trails);
   options.trailS = m_settings.trailS;
   options.contactMarks = m_settings.contacts;
+  options.contacts = m_contacts.rule();
   options.shadow = m_settings.shadow;
   if (m_settings.path) options.path = m_path->frames();
   options.dark = isDark(palette());
-  options.highlightJoint = m_workspace.selection().joint;
   try {
     m_scene.setOptions(options);
   } catch (const Error& error) {

@@ -4,6 +4,7 @@
 #include <QTimer>
 #include <memory>
 
+#include "panels/contact_tolerance.h"
 #include "panels/current_path.h"
 #include "panels/floor_path_tool.h"
 #include "panels/scene_content.h"
@@ -75,6 +76,7 @@ class SceneView : public QVTKOpenGLNativeWidget {
   SceneSettings m_settings;
   SceneContent m_content;
   MotionColouring* m_colouring = nullptr;
+  ContactTolerance& m_contacts;
   SceneOverlay* m_overlay = nullptr;
   QTimer m_redraw, m_hover;
   bool m_motionsChanged = true, m_optionsChanged = true;

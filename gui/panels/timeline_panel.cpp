@@ -12,6 +12,7 @@
 #include <QVBoxLayout>
 #include <cmath>
 
+#include "panels/contact_tolerance.h"
 #include "panels/playback.h"
 #include "panels/time_ruler.h"
 #include "panels/transport_icons.h"
@@ -25,6 +26,7 @@ class TimelinePanel : public QWidget {
   TimelinePanel(Workspace& workspace, QWidget* parent)
       : QWidget(parent),
         m_workspace(workspace),
+        m_contacts(ContactTolerance::of(workspace)),
         m_gaitRows(workspace),
         m_playback(new Playback(workspace, this)) {
     setObjectName(QStringLiteral("timelinePanel"));
@@ -195,12 +197,18 @@ class TimelinePanel : public QWidget {
     m_tolerance->setRange(0.3, 200.0);
     m_tolerance->setDecimals(1);
     m_tolerance->setSingleStep(1.0);
-    m_tolerance->setValue(25.0);
+    m_tolerance->setValue(m_contacts.cmS());
     m_tolerance->setSuffix(tr(" cm/s"));
-    m_tolerance->setToolTip(tr("A foot rests while it is slower than this over the floor"));
+    m_tolerance->setToolTip(
+        tr("A foot rests while it is slower than this over the floor; the 3D "
+           "view marks the same contacts"));
     label->setBuddy(m_tolerance);
-    connect(m_tolerance, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
-            [this] { updateRows(); });
+    connect(m_tolerance, qOverload<double>(&QDoubleSpinBox::valueChanged), &m_contacts,
+            &ContactTolerance::set);
+    connect(&m_contacts, &ContactTolerance::changed, this, [this] {
+      m_tolerance->setValue(m_contacts.cmS());
+      updateRows();
+    });
     bar->addWidget(label);
     bar->addWidget(m_tolerance);
   }
@@ -239,7 +247,7 @@ class TimelinePanel : public QWidget {
   }
 
   void updateRows() {
-    const std::vector<GaitRow> rows = m_gaitRows.rows(m_tolerance->value());
+    const std::vector<GaitRow> rows = m_gaitRows.rows(m_contacts.rule());
     const bool motions = m_workspace.duration() > 0.0;
     m_gait->setHint(motions ? tr("No joints of contact were found: name the feet in the document.")
                             : tr("Motions that you open or sample play here."));
@@ -265,6 +273,7 @@ class TimelinePanel : public QWidget {
   }
 
   Workspace& m_workspace;
+  ContactTolerance& m_contacts;
   GaitRows m_gaitRows;
   Playback* m_playback;
   TimeRuler* m_ruler = nullptr;

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "render/colours.h"
 
 namespace marey::gui {
 namespace {
@@ -70,6 +71,16 @@ TrainingRun readTrainingRun(const fs::path& folder) {
   add("best", best->step);
   add("last", out.rows.back().step);
   return out;
+}
+
+int colourIndexOf(const TrainingRun& run, const Checkpoint& checkpoint) {
+  int64_t first = checkpoint.step, last = checkpoint.step;
+  for (const Checkpoint& other : run.checkpoints) {
+    first = std::min(first, other.step);
+    last = std::max(last, other.step);
+  }
+  const auto steps = static_cast<double>(std::max<int64_t>(1, last - first));
+  return render::stageIndex(static_cast<double>(checkpoint.step - first) / steps);
 }
 
 }  // namespace marey::gui

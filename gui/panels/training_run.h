@@ -29,4 +29,7 @@ struct TrainingRun {
 /// Throws FileError, or InputError naming the line of a log that is none.
 TrainingRun readTrainingRun(const std::filesystem::path& folder);
 
+/// Of render::colourOf: checkpoints go from dark to light with their steps.
+int colourIndexOf(const TrainingRun& run, const Checkpoint& checkpoint);
+
 }  // namespace marey::gui

@@ -1,11 +1,14 @@
 // What views show of a picked motion, of refused placements and of steered motions, and that large
 // sets do not hold up the window.
 #include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QPushButton>
 #include <QTest>
 #include <ctime>
 
 #include "gui/gui_support.h"
+#include "panels/contact_tolerance.h"
+#include "panels/gait_rows.h"
 #include "panels/gamepad.h"
 #include "panels/scene_view.h"
 #include "plots/chart_view.h"
@@ -13,6 +16,8 @@
 #include <linux/joystick.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "render/contacts.h"
 
 namespace marey::gui {
 namespace {
@@ -60,6 +65,49 @@ TEST_F(Views, ARefusedPlacementLeavesWhatIsPickedAndShowsTheWorld) {
   EXPECT_EQ(box->currentIndex(), 0) << "the box says what is drawn";
   EXPECT_EQ(view->content().ids.size(), view->scene().motions().size());
   EXPECT_EQ(view->content().ids, m_workspace->visibleMotions());
+}
+
+TEST_F(Views, MarksOnTheFloorAreTheContactsOfTheTimeline) {
+  const Skeleton& body = *m_workspace->skeleton();
+  const std::string foot = body.names[static_cast<size_t>(stats::feetOf(body).back())];
+  m_workspace->edit(QStringLiteral("Feet"), [&](Experiment& e) { e.feet = foot; });
+  m_window->showPanel("timeline");
+  m_window->showPanel("scene");
+  auto* view = child<SceneView>(*m_window, "sceneView");
+  child<QDoubleSpinBox>(*m_window, "timelineTolerance")->setValue(60.0);
+  settle();
+  const stats::ContactRule rule = view->scene().options().contacts;
+  EXPECT_EQ(rule, (stats::ContactRule{.toleranceCmS = 60.0, .feet = foot}));
+  const auto row = GaitRows(*m_workspace).rows(ContactTolerance::of(*m_workspace).rule()).front();
+  const auto rests = render::feetAtRest(*view->content().motions.front().clip, rule);
+  ASSERT_FALSE(rests.empty());
+  ASSERT_EQ(row.contacts.size(), rests.size());
+  for (size_t i = 0; i < rests.size(); ++i) {
+    EXPECT_NEAR(row.contacts[i].beginS, rests[i].beginS, 1e-9);
+    EXPECT_NEAR(row.contacts[i].endS, rests[i].endS, 1e-9);
+  }
+}
+
+TEST_F(Views, AJointIsTheSameByNameInBodiesOfAnotherOrder) {
+  Clip clip = *m_workspace->groups().front().motions.front().clip;
+  Skeleton body = *clip.skeleton;
+  const int joint = body.jointCount() - 1;
+  const std::string name = body.names.back();
+  std::swap(body.names[static_cast<size_t>(joint)], body.names[static_cast<size_t>(joint) - 1]);
+  clip.skeleton = std::make_shared<const Skeleton>(body);
+  addMotions({{std::make_shared<const Clip>(clip), {}, true}, {withoutHips(), {}, true}});
+  MotionColouring colouring(*m_workspace);
+  m_workspace->select({.joint = joint});
+  SceneSettings settings;
+  settings.trails = Trails::SelectedJoint;
+  const auto motions = sceneContent(*m_workspace, settings, colouring).motions;
+  ASSERT_GE(motions.size(), 3U);
+  EXPECT_EQ(motions.front().highlightJoint, joint);
+  EXPECT_EQ(motions.front().trailJoints, std::vector<int>{joint});
+  const auto& swapped = motions[motions.size() - 2];
+  EXPECT_EQ(swapped.highlightJoint, joint - 1);
+  EXPECT_EQ(swapped.trailJoints, std::vector<int>{joint - 1});
+  EXPECT_FALSE(motions.back().highlightJoint) << "no joint of this name";
 }
 
 TEST_F(Views, APickedBodyLightsUpItsCurveInEveryPlot) {

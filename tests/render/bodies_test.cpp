@@ -84,7 +84,7 @@ TEST(Bodies, PosesAreLinearInTimeAndHeldBeyondTheEnds) {
 }
 
 TEST(Contacts, AFootAtRestIsFoundWithItsPlaceAndTime) {
-  const std::vector<Rest> rests = feetAtRest(tinyClipWithRest(20, 6, 12));
+  const std::vector<Rest> rests = feetAtRest(tinyClipWithRest(20, 6, 12), {});
   ASSERT_EQ(rests.size(), 1U);
   EXPECT_EQ(rests[0].joint, tinySkeleton()->find("LeftFoot"));
   EXPECT_NEAR(rests[0].beginS, 0.6, 1e-9);
@@ -92,12 +92,23 @@ TEST(Contacts, AFootAtRestIsFoundWithItsPlaceAndTime) {
   EXPECT_LT((rests[0].place - Vec3(0.6F, 0.05F, 0.1F)).norm(), 1e-5F);
 }
 
+TEST(Contacts, AreThoseOfAGaitDiagramByTheSameRule) {
+  const Clip clip = tinyClipWithRest(20, 6, 12);
+  // Everything glides at 1 m/s, so that a tolerance above it makes one contact of all frames.
+  const std::vector<Rest> all = feetAtRest(clip, {.toleranceCmS = 130.0, .feet = "RightFoot"});
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].joint, tinySkeleton()->find("RightFoot"));
+  EXPECT_NEAR(all[0].beginS, 0.0, 1e-9);
+  EXPECT_NEAR(all[0].endS, 1.9, 1e-9);
+  EXPECT_TRUE(feetAtRest(clip, {.feet = "Hoof"}).empty()) << "no such feet, no marks";
+}
+
 TEST(Contacts, AGlidingFigureHasNone) {
-  EXPECT_TRUE(feetAtRest(tinyClip(20)).empty());
+  EXPECT_TRUE(feetAtRest(tinyClip(20), {}).empty());
 }
 
 TEST(Contacts, ARestUntilTheLastFrameCounts) {
-  const std::vector<Rest> rests = feetAtRest(tinyClipWithRest(10, 5, 9));
+  const std::vector<Rest> rests = feetAtRest(tinyClipWithRest(10, 5, 9), {});
   ASSERT_EQ(rests.size(), 1U);
   EXPECT_NEAR(rests[0].endS, 0.9, 1e-9);
 }

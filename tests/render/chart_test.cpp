@@ -1,8 +1,8 @@
 #include "render/chart.h"
 
 #include <cmath>
-#include <set>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -42,10 +42,41 @@ TEST(Ticks, StepsAreOneTwoOrFiveTimesAPowerOfTenForAnyRange) {
 TEST(Colours, NaturalIsNearBlackAndSystemsDiffer) {
   EXPECT_EQ(hexOf(naturalColour()), "#222222");
   EXPECT_EQ(hexOf(colourOf(0)), "#0072b2");
-  std::set<std::string> colours;
-  for (int i = 0; i < 6; ++i) colours.insert(hexOf(colourOf(i)));
-  EXPECT_EQ(colours.size(), 6U);
-  EXPECT_EQ(hexOf(colourOf(6)), hexOf(colourOf(0)));
+  EXPECT_EQ(hexOf(colourOf(12)), hexOf(colourOf(0)));
+}
+
+/// Distance in CIE L*a*b* (1976); 2 is just noticeable side by side, 20 clear from memory.
+double labDistance(const Colour& a, const Colour& b) {
+  const auto lab = [](const Colour& c) {
+    const auto linear = [](double v) {
+      return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    };
+    const auto root = [](double v) {
+      return v > 0.008856 ? std::cbrt(v) : 7.787 * v + 16.0 / 116.0;
+    };
+    const double r = linear(c.r), g = linear(c.g), b = linear(c.b);
+    const double x = root((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);
+    const double y = root(0.2126 * r + 0.7152 * g + 0.0722 * b);
+    const double z = root((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
+    return Eigen::Vector3d(116.0 * y, 500.0 * (x - y), 200.0 * (y - z));
+  };
+  return (lab(a) - lab(b)).norm();
+}
+
+TEST(Colours, OfTwelveSystemsAndNaturalMotionDifferClearly) {
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_GT(labDistance(colourOf(i), naturalColour()), 20.0) << i;
+    for (int k = 0; k < i; ++k)
+      EXPECT_GT(labDistance(colourOf(i), colourOf(k)), 20.0) << i << " and " << k;
+  }
+}
+
+TEST(Colours, OfStagesGoFromDarkToLightBesideThoseOfSystems) {
+  for (double share = 0.0; share < 0.95; share += 0.1)
+    EXPECT_NE(colourOf(stageIndex(share)), colourOf(stageIndex(share + 0.1))) << share;
+  const Colour early = colourOf(stageIndex(0.0)), late = colourOf(stageIndex(1.0));
+  EXPECT_LT(early.r + early.g + early.b, late.r + late.g + late.b);
+  EXPECT_EQ(hexOf(colourOf(stageIndex(0.5) + 1)), hexOf(colourOf((stageIndex(0.5) + 1) % 12)));
 }
 
 Series line(const std::string& name, const Colour& colour, double offset) {

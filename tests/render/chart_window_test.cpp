@@ -179,7 +179,7 @@ TEST(DarkTheme, TurnsPaperDarkAndNaturalMotionLight) {
 TEST(DarkTheme, LeavesEveryColourReadable) {
   const ChartTheme dark = darkTheme();
   EXPECT_GE(contrast(themed(naturalColour(), dark), dark.background), 7.0);
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < 12; ++i)
     EXPECT_GE(contrast(themed(colourOf(i), dark), dark.background), 4.5) << i;
   EXPECT_EQ(themed(withOpacity(colourOf(2), 0.25), dark).a, 0.25);
   EXPECT_NEAR(contrast({0, 0, 0, 1}, {1, 1, 1, 1}), 21.0, 1e-9);

@@ -223,9 +223,10 @@ TEST(LivePicture, FramesHaveTheirOwnColours) {
 
 TEST(LivePicture, ATrailLiesWhereTheJointWas) {
   LiveOptions options = bare();
-  options.trailJoints = {7, 99};  // a joint that is not there is left out
   options.trailS = 0.8;
-  LiveScene scene = sceneOf({motionOf(tinyClip(31), red)}, options);
+  LiveMotion motion = motionOf(tinyClip(31), red);
+  motion.trailJoints = {7, 99};  // a joint that is not there is left out
+  LiveScene scene = sceneOf({motion}, options);
   scene.setTime(2.0);
   const Image image = pictureOf(scene);
   const auto inkNear = [&](double time) {
@@ -279,10 +280,9 @@ TEST(LivePicture, ThePathIsDrawnOnTheFloor) {
 }
 
 TEST(LivePicture, AHighlightedJointHasABall) {
-  LiveOptions options = bare();
-  LiveScene scene = sceneOf({motionOf(tinyClip(1), blue)}, options);
-  options.highlightJoint = 6;
-  scene.setOptions(options);
+  LiveMotion motion = motionOf(tinyClip(1), blue);
+  motion.highlightJoint = 6;
+  LiveScene scene = sceneOf({motion}, bare());
   const Image image = pictureOf(scene);
   const uint8_t* p = pixelAt(image, scene.screenPoint(scene.pose(0)[6], width, height));
   EXPECT_GT(p[0], p[2] + 60);
@@ -290,11 +290,12 @@ TEST(LivePicture, AHighlightedJointHasABall) {
 
 TEST(LivePicture, EarlierDrawingsLeaveNoTrace) {
   LiveOptions options;
-  options.trailJoints = {7};
   options.contactMarks = true;
   const auto fresh = [&] {
-    return sceneOf({motionOf(tinyClipWithRest(31, 6, 12), red), motionOf(tinyClip(9), blue, 0.4)},
-                   options);
+    LiveMotion resting = motionOf(tinyClipWithRest(31, 6, 12), red);
+    LiveMotion gliding = motionOf(tinyClip(9), blue, 0.4);
+    resting.trailJoints = gliding.trailJoints = {7};
+    return sceneOf({resting, gliding}, options);
   };
   LiveScene scene = fresh();
   scene.setTime(1.1);

@@ -1,7 +1,9 @@
 // Training runs and stored models.
 #include "model/trainer.h"
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <sstream>
 
@@ -9,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "model/training_pace.h"
 
 namespace marey {
 namespace {
@@ -48,6 +51,51 @@ std::string refusal(const std::function<void(TensorFile&)>& damage) {
 void expectNames(const std::string& message, const std::string& part) {
   EXPECT_NE(message.find(part), std::string::npos) << message;
   EXPECT_NE(message.find("damaged.marey"), std::string::npos) << message;
+}
+
+TEST(TrainingPace, HoldsItsSharesOfTheFrames) {
+  const TrainingPace pace = trainingPace(test::tinyData().train, 20.0);
+  std::vector<double> speeds;
+  for (const FeatureSequence& s : test::tinyData().train)
+    for (long t = 0; t < s.control.rows(); ++t)
+      speeds.push_back(20.0 * std::hypot(s.control(t, 0), s.control(t, 1)));
+  const auto share = [&](double below) {
+    const auto count =
+        std::count_if(speeds.begin(), speeds.end(), [&](double v) { return v < below; });
+    return static_cast<double>(count) / static_cast<double>(speeds.size());
+  };
+  EXPECT_NEAR(share(pace.speedMS.lowest), 0.005, 0.01);
+  EXPECT_NEAR(share(pace.speedMS.low), 0.05, 0.01);
+  EXPECT_NEAR(share(pace.speedMS.high), 0.95, 0.01);
+  EXPECT_NEAR(share(pace.speedMS.highest), 0.995, 0.01);
+  // Mirrored motion turns as far to the right as to the left.
+  EXPECT_NEAR(pace.turnRadS.lowest, -pace.turnRadS.highest, 0.02);
+  EXPECT_GT(pace.turnRadS.highest, pace.turnRadS.high);
+  EXPECT_THROW(trainingPace({}, 20.0), NumericError);
+}
+
+TEST(StoredModel, KnowsThePaceOfItsTrainingData) {
+  const TempFolder folder;
+  TrainRequest request = test::tinyRequest(folder / "run");
+  request.config["training"]["validation_share"] = 0.0;
+  request.steps = 1;
+  EXPECT_EQ(readTrainingPace(test::trainTiny(request).last),
+            trainingPace(test::tinyData().train, 20.0));
+}
+
+TEST(StoredModel, WithoutAPaceHasNoneAndABrokenOneIsRefused) {
+  const TempFolder folder;
+  const auto file = folder / "tiny.marey";
+  TensorFile stored = test::tinyFile();
+  stored.metadata["provenance"]["training_pace"]["speed_m_s"] = {0.5, 0.1, 1.0, 2.0};
+  writeTensorFile(file, stored);
+  EXPECT_THROW(readTrainingPace(file), InputError);
+  stored.metadata["provenance"].erase("training_pace");
+  writeTensorFile(file, stored);
+  EXPECT_FALSE(readTrainingPace(file).has_value());
+  std::ofstream(file) << "short";
+  EXPECT_THROW(readTrainingPace(file), InputError);
+  EXPECT_THROW(readTrainingPace(folder / "none.marey"), FileError);
 }
 
 TEST(StoredModel, AMissingTensorIsRefused) {

@@ -68,6 +68,15 @@ TEST(ChartHit, ALineComesBeforeTheBandBehindIt) {
   EXPECT_EQ(at(grid, 3.0, 7.0)->curve->series, 2);
 }
 
+TEST(ChartHit, AnUprightRuleIsFoundWhereNoLineIsNear) {
+  ChartGrid grid = twoLines();
+  grid.charts[0].series.push_back({.kind = SeriesKind::VerticalRule, .name = "worst", .x = {7.0}});
+  const auto rule = at(grid, 7.0, 4.5), line = at(grid, 7.0, 7.1);
+  ASSERT_TRUE(rule && rule->curve && line && line->curve);
+  EXPECT_EQ(rule->curve->series, 2);
+  EXPECT_EQ(line->curve->series, 0);
+}
+
 TEST(ChartCsv, HasALinePerPointAndQuotesCommas) {
   EXPECT_EQ(chartCsv(twoLines()),
             "chart,series,line,x,y,low,high\n"

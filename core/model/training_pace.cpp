@@ -1,0 +1,66 @@
+#include "model/training_pace.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/tensor_metadata.h"
+
+namespace marey {
+namespace {
+
+constexpr const char* kKey = "training_pace";
+
+PaceQuantiles quantilesOf(std::vector<double> values) {
+  if (values.empty()) throw NumericError("the pace of training data needs at least one frame");
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) {
+    const double position = share * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<size_t>(position);
+    const size_t above = std::min(below + 1, values.size() - 1);
+    return std::lerp(values[below], values[above], position - static_cast<double>(below));
+  };
+  return {at(0.005), at(0.05), at(0.95), at(0.995)};
+}
+
+Json toJson(const PaceQuantiles& q) {
+  return {q.lowest, q.low, q.high, q.highest};
+}
+
+PaceQuantiles quantilesFrom(JsonReader& reader, const std::string& key) {
+  const auto values = reader.required<std::vector<double>>(key);
+  if (values.size() != 4 || !std::is_sorted(values.begin(), values.end()))
+    throwInput(reader.place(key), "four rising values", "{} values, or others", values.size());
+  return {values[0], values[1], values[2], values[3]};
+}
+
+}  // namespace
+
+TrainingPace trainingPace(const std::vector<FeatureSequence>& sequences, double fps) {
+  std::vector<double> speeds, turns;
+  for (const FeatureSequence& sequence : sequences)
+    for (long t = 0; t < sequence.control.rows(); ++t) {
+      speeds.push_back(std::hypot(sequence.control(t, 0), sequence.control(t, 1)) * fps);
+      turns.push_back(sequence.control(t, 2) * fps);
+    }
+  return {quantilesOf(std::move(speeds)), quantilesOf(std::move(turns))};
+}
+
+Json toJson(const TrainingPace& pace) {
+  return {{"quantiles", {0.005, 0.05, 0.95, 0.995}},
+          {"speed_m_s", toJson(pace.speedMS)},
+          {"turn_rad_s", toJson(pace.turnRadS)}};
+}
+
+std::optional<TrainingPace> trainingPaceOf(const Json& provenance, const std::string& origin) {
+  if (!provenance.is_object() || !provenance.contains(kKey)) return std::nullopt;
+  JsonReader reader(provenance.at(kKey), origin, std::string(kKey) + ".");
+  return TrainingPace{quantilesFrom(reader, "speed_m_s"), quantilesFrom(reader, "turn_rad_s")};
+}
+
+std::optional<TrainingPace> readTrainingPace(const std::filesystem::path& model) {
+  const Json metadata = readTensorMetadata(model);
+  if (!metadata.is_object() || !metadata.contains("provenance")) return std::nullopt;
+  return trainingPaceOf(metadata.at("provenance"), model.string());
+}
+
+}  // namespace marey

@@ -117,12 +117,19 @@ Json toJson(const LiveShot& shot) {
               {"dark", o.dark},
               {"begin_s", shot.beginS}};
   if (shot.endS) out["end_s"] = *shot.endS;
-  if (!o.trailJoints.empty()) {
-    out["trail_joints"] = o.trailJoints;
+  if (shot.motions.empty()) return out;
+  // Joints by name: bodies may differ, but all show the same ones.
+  const LiveMotion& first = shot.motions.front();
+  const auto& names = first.clip->skeleton->names;
+  Json trails = Json::array();
+  for (const int joint : first.trailJoints) trails.push_back(names.at(static_cast<size_t>(joint)));
+  if (!trails.empty()) {
+    out["trail_joints"] = trails;
     out["trail_s"] = o.trailS;
   }
-  if (o.highlightJoint) out["highlight_joint"] = *o.highlightJoint;
-  if (!shot.motions.empty()) out["opacity"] = shot.motions.front().opacity;
+  if (first.highlightJoint)
+    out["highlight_joint"] = names.at(static_cast<size_t>(*first.highlightJoint));
+  out["opacity"] = first.opacity;
   return out;
 }
 

@@ -1,5 +1,6 @@
 // The whole window, light and dark, as it stands in the user guide. Pictures that change on purpose
 // are copied over their baselines: NAME.actual.png lies where the test ran.
+#include <QAbstractItemView>
 #include <QPushButton>
 
 #include "gui/gui_support.h"
@@ -60,9 +61,11 @@ TEST_F(Screenshots, SelectionInStatisticsAndDiversity) {
 }
 
 TEST_F(Screenshots, Statistics) {
-  auto* compute = child<QPushButton>(*m_window->showPanel("statistics"), "statisticsCompute");
-  ASSERT_TRUE(waitUntil([&] { return compute->isEnabled(); }));
-  compute->click();
+  QWidget* panel = m_window->showPanel("statistics");
+  settle(500);
+  child<QPushButton>(*panel, "statisticsCompute")->click();
+  auto* table = child<QAbstractItemView>(*panel, "statisticsTable");
+  ASSERT_TRUE(waitUntil([&] { return table->model()->rowCount() > 0; }));
   take(Theme::Light, {"library", "statistics"}, "window-statistics");
 }
 

@@ -182,10 +182,16 @@ TEST_F(Export, VideosHaveTheFramesRateAndSizeThatWereAskedFor) {
 TEST_F(Export, ThePictureIsWhatTheSceneShows) {
   auto* detail = m_window->findChild<QComboBox*>(QStringLiteral("sceneColourBy"));
   ASSERT_NE(detail, nullptr);
+  // Colours by value are worked out beside the event loop.
+  const auto coloured = [this] {
+    settle();
+    EXPECT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
+    settle();
+  };
   detail->setCurrentIndex(3);  // by speed
   child<QAction>(*m_window, "sceneViewFront")->trigger();
   m_workspace->setTime(1.0);
-  settle();
+  coloured();
   choose(ExportFormat::Still);
   press();
   const std::string first = readFile(m_out / "motions.png");
@@ -204,7 +210,7 @@ TEST_F(Export, ThePictureIsWhatTheSceneShows) {
   const auto before = render::decodePng(first, "still").pixels;
   EXPECT_EQ(again(), before);
   detail->setCurrentIndex(0);
-  settle();
+  coloured();
   const auto bySystem = again();
   EXPECT_NE(bySystem, before);
   m_workspace->setTime(0.2);

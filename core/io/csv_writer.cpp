@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "base/atomic_file.h"
+#include "base/csv.h"
 #include "base/json.h"
 #include "io/export_record.h"
 #include "io/normalise.h"
@@ -13,13 +14,6 @@ namespace {
 
 /// Nanometres: far below what capture resolves, and short files.
 constexpr int kDigits = 9;
-
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
-  std::string out = "\"";
-  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string{c};
-  return out + '"';
-}
 
 /// The clip in the unit and axes of the file.
 Clip inFileUnits(const Clip& clip, const LengthUnit& unit, const std::string& up) {
@@ -39,7 +33,7 @@ std::string longText(const Clip& clip, const std::string& unit) {
     for (int j = 0; j < clip.jointCount(); ++j) {
       const Vec3& p = clip.at(t, j);
       fmt::format_to(std::back_inserter(out), "{},{:.9g},{},{:.{}g},{:.{}g},{:.{}g}\n", t,
-                     t / clip.fps, quoted(clip.skeleton->names[static_cast<size_t>(j)]), p.x(),
+                     t / clip.fps, csvField(clip.skeleton->names[static_cast<size_t>(j)]), p.x(),
                      kDigits, p.y(), kDigits, p.z(), kDigits);
     }
   return out;
@@ -49,7 +43,7 @@ std::string wideText(const Clip& clip) {
   std::string out = "time";
   for (const std::string& name : clip.skeleton->names)
     for (const char axis : {'X', 'Y', 'Z'})
-      out += "," + quoted(name + "_" + std::string{axis} + "position");
+      out += "," + csvField(name + "_" + std::string{axis} + "position");
   for (int t = 0; t < clip.frameCount(); ++t) {
     fmt::format_to(std::back_inserter(out), "\n{:.9g}", t / clip.fps);
     for (const Vec3& p : clip.frame(t))

@@ -34,12 +34,16 @@ std::string plainName(const std::string& name) {
   return out;
 }
 
+std::string replaced(std::string_view name, size_t at, std::string_view from, std::string_view to) {
+  return fmt::format("{}{}{}", name.substr(0, at), to, name.substr(at + from.size()));
+}
+
 std::string withSide(std::string_view habit, bool left) {
   std::string out(habit);
   if (const size_t at = out.find("<s>"); at != std::string::npos)
-    out.replace(at, 3, left ? "left" : "right");
+    out = replaced(out, at, "<s>", left ? "left" : "right");
   if (const size_t at = out.find("<l>"); at != std::string::npos)
-    out.replace(at, 3, left ? "l" : "r");
+    out = replaced(out, at, "<l>", left ? "l" : "r");
   return out;
 }
 
@@ -50,13 +54,6 @@ int findPart(const std::vector<std::string>& plain, Habits habits, bool left) {
     if (it != plain.end()) return static_cast<int>(it - plain.begin());
   }
   return -1;
-}
-
-std::string replaced(const std::string& name, size_t at, std::string_view from,
-                     std::string_view to) {
-  std::string out = name;
-  out.replace(at, from.size(), to);
-  return out;
 }
 
 /// Names that the joint on the other side may have: words first, then single letters at the start
@@ -79,7 +76,7 @@ std::vector<std::string> otherSideNames(const std::string& name) {
     if (name.size() > start && name.compare(name.size() - 1, 1, letter) == 0)
       out.push_back(replaced(name, name.size() - 1, letter, other));
     for (const char bar : {'_', '.', '-', ' '})  // "Leg_L_end", "c_l_foot"
-      if (const size_t at = name.find(std::string{bar} + std::string(letter) + bar);
+      if (const size_t at = name.find(fmt::format("{0}{1}{0}", bar, letter));
           at != std::string::npos)
         out.push_back(replaced(name, at + 1, letter, other));
   }

@@ -116,6 +116,7 @@ Json toJson(const LiveShot& shot) {
               {"path", !o.path.empty()},
               {"dark", o.dark},
               {"begin_s", shot.beginS}};
+  if (o.contactMarks) out["contact_tolerance_cm_s"] = o.contacts.toleranceCmS;
   if (shot.endS) out["end_s"] = *shot.endS;
   if (shot.motions.empty()) return out;
   // Joints by name: bodies may differ, but all show the same ones.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/csv.h"
+
 namespace marey::report {
 
 using render::escapeXml;
@@ -9,16 +11,6 @@ using render::escapeXml;
 namespace {
 std::string heading(const Column& column) {
   return column.unit.empty() ? column.name : column.name + " [" + column.unit + "]";
-}
-
-std::string csvField(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + "\"";
 }
 
 bool isMissing(const Cell& cell) {

@@ -19,6 +19,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "panels/contact_tolerance.h"
 #include "panels/export_picture_form.h"
 
 namespace marey::gui {
@@ -191,7 +192,8 @@ class ExportDialog : public QDialog {
             .folder = m_folder->text().toStdString(),
             .name = m_name->text().toStdString(),
             .items = m_items,
-            .range = range()};
+            .range = range(),
+            .contacts = ContactTolerance::of(m_workspace).rule()};
   }
 
   /// Names of the motions: worked out when these change, not at every letter of a folder's name.

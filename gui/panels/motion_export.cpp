@@ -1,7 +1,6 @@
 #include "panels/motion_export.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "base/atomic_file.h"
@@ -38,16 +37,9 @@ const char* extensionOf(ExportFormat format) {
   return ".csv";
 }
 
-/// The first frame inside, and that after the last; none inside where they are not in order.
-std::pair<int, int> framesInside(const Clip& clip, const TimeRange& range) {
-  return {
-      std::max(0, static_cast<int>(std::ceil(range.beginS * clip.fps - 1e-9))),
-      std::min(clip.frameCount(), static_cast<int>(std::floor(range.endS * clip.fps + 1e-9)) + 1)};
-}
-
 ClipPtr inRange(const ClipPtr& clip, const std::optional<TimeRange>& range) {
   if (!range) return clip;
-  const auto [first, last] = framesInside(*clip, *range);
+  const auto [first, last] = framesIn(*clip, range);
   return std::make_shared<const Clip>(sliceFrames(*clip, first, last));
 }
 
@@ -94,6 +86,7 @@ render::SceneSpec figureOf(const ExportRequest& request) {
   scene.view = request.view;
   scene.orthographic = request.orthographic;
   scene.path = std::move(path);
+  scene.contacts = request.contacts;
   return scene;
 }
 
@@ -179,10 +172,7 @@ std::vector<ExportItem> exportItems(const Experiment& experiment,
     const auto index = static_cast<size_t>(id.index);
     if (group == groups.end() || index >= group->motions.size()) continue;
     const Motion& motion = group->motions[index];
-    if (range) {
-      const auto [first, last] = framesInside(*motion.clip, *range);
-      if (first >= last) continue;
-    }
+    if (framesIn(*motion.clip, range).empty()) continue;
     const std::string wanted = nameOf(*group, motion, id.index);
     std::string name = wanted;
     for (int n = 2; !names.insert(name).second; ++n) name = fmt::format("{}_{}", wanted, n);

@@ -8,18 +8,12 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.h"
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/json.h"
 
 namespace marey::gui {
 namespace {
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
 
 std::string cell(const std::vector<double>& values, size_t index) {
   if (index >= values.size() || !std::isfinite(values[index])) return "";
@@ -28,7 +22,7 @@ std::string cell(const std::vector<double>& values, size_t index) {
 
 void addSeries(std::string& out, const std::string& chart, const render::Series& s) {
   auto add = std::back_inserter(out);
-  const std::string start = quoted(chart) + "," + quoted(s.name) + ",";
+  const std::string start = csvField(chart) + "," + csvField(s.name) + ",";
   if (s.cloud) {
     for (size_t i = 0; i < s.cloud->y.size(); ++i) {
       const float y = s.cloud->y[i];

@@ -7,20 +7,6 @@
 #include "stats/sample_distance.h"
 
 namespace marey::gui {
-namespace {
-
-struct FrameSpan {
-  int first = 0, last = 0;  ///< last is outside
-};
-
-FrameSpan spanOf(const Clip& clip, const std::optional<TimeRange>& range) {
-  if (!range) return {0, clip.frameCount()};
-  return {
-      std::max(0, static_cast<int>(std::ceil(range->beginS * clip.fps - 1e-9))),
-      std::min(clip.frameCount(), static_cast<int>(std::floor(range->endS * clip.fps + 1e-9)) + 1)};
-}
-
-}  // namespace
 
 std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups) {
   std::vector<MotionSet> sets;
@@ -58,8 +44,8 @@ ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range
   ClipsInRange out;
   for (size_t i = 0; i < set.clips.size(); ++i) {
     const ClipPtr& clip = set.clips[i];
-    const FrameSpan span = spanOf(*clip, range);
-    if (span.first >= span.last) continue;
+    const FrameSpan span = framesIn(*clip, range);
+    if (span.empty()) continue;
     out.ids.push_back(set.ids[i]);
     out.clips.push_back(range ? sliceFrames(*clip, span.first, span.last) : *clip);
     if (set.wanted.empty()) continue;

@@ -28,7 +28,7 @@ std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups);
 const MotionSet* naturalSet(const std::vector<MotionSet>& sets);
 
 /// The parts of a set's motions inside a range of time (all without one), by the rule of
-/// Workspace::clipInRange; motions with nothing inside are left out.
+/// framesIn; motions with nothing inside are left out.
 struct ClipsInRange {
   std::vector<MotionId> ids;  ///< of every clip
   std::vector<Clip> clips;

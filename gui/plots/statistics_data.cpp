@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "stats/footsteps.h"
 
@@ -22,13 +23,6 @@ StatisticsRow& rowFor(StatisticsTable& table, const stats::StatisticResult& resu
                         .systems = {}});
   table.rows.back().systems.resize(table.systems.size());
   return table.rows.back();
-}
-
-std::string quoted(const std::string& text, char separator) {
-  if (separator != ',' || text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
 }
 
 std::string number(const std::optional<double>& value) {
@@ -122,7 +116,8 @@ std::string statisticsText(const StatisticsTable& table, char separator) {
   std::string out;
   const auto line = [&](const std::vector<std::string>& cells) {
     for (size_t i = 0; i < cells.size(); ++i)
-      out += (i > 0 ? std::string(1, separator) : "") + quoted(cells[i], separator);
+      out += (i > 0 ? std::string(1, separator) : "") +
+             (separator == ',' ? csvField(cells[i]) : cells[i]);
     out += "\n";
   };
   std::vector<std::string> head{"statistic", "unit"};

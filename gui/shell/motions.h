@@ -58,4 +58,12 @@ struct TimeRange {
   bool operator==(const TimeRange&) const = default;
 };
 
+struct FrameSpan {
+  int first = 0, last = 0;  ///< last is outside; none inside where it is not above first
+  bool empty() const { return first >= last; }
+};
+
+/// The frames of a clip inside a range of time, its ends included; all without a range.
+FrameSpan framesIn(const Clip& clip, const std::optional<TimeRange>& range);
+
 }  // namespace marey::gui

@@ -106,8 +106,6 @@ class Workspace : public QObject {
   double duration() const;       ///< of the longest visible motion; 0 without one
   const std::optional<TimeRange>& range() const { return m_range; }
   void setRange(std::optional<TimeRange> range);
-  /// The motion's part inside the range; all of it without one, null where nothing is inside.
-  ClipPtr clipInRange(const MotionId& id) const;
 
   /// Shows an error to the user.
   void report(const QString& title, const QString& error);

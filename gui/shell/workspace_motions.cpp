@@ -1,6 +1,5 @@
 // Motions, selection and time.
 #include <algorithm>
-#include <cmath>
 
 #include "shell/workspace.h"
 
@@ -178,18 +177,6 @@ void Workspace::setRange(std::optional<TimeRange> range) {
   if (range == m_range) return;
   m_range = range;
   Q_EMIT rangeChanged();
-}
-
-ClipPtr Workspace::clipInRange(const MotionId& id) const {
-  const Motion* found = motion(id);
-  if (found == nullptr) return nullptr;
-  if (!m_range) return found->clip;
-  const Clip& clip = *found->clip;
-  const int first = std::max(0, static_cast<int>(std::ceil(m_range->beginS * clip.fps - 1e-9)));
-  const int last = std::min(clip.frameCount(),
-                            static_cast<int>(std::floor(m_range->endS * clip.fps + 1e-9)) + 1);
-  if (first >= last) return nullptr;
-  return std::make_shared<const Clip>(sliceFrames(clip, first, last));
 }
 
 }  // namespace marey::gui

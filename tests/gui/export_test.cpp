@@ -221,6 +221,19 @@ TEST_F(Export, ThePictureIsWhatTheSceneShows) {
   EXPECT_NE(again(), earlier);
 }
 
+TEST_F(Export, AFigureMarksTheContactsOfTheTimeline) {
+  child<QComboBox>(*m_dialog, "exportLook")->setCurrentIndex(1);
+  choose(ExportFormat::Still);
+  auto* tolerance = child<QDoubleSpinBox>(*m_window->showPanel("timeline"), "timelineTolerance");
+  std::vector<std::vector<uint8_t>> pictures;
+  for (const double cmS : {1.0, 300.0}) {
+    tolerance->setValue(cmS);
+    pressAndAnswer(QMessageBox::Yes);
+    pictures.push_back(render::decodePng(readFile(m_out / "motions.png"), "still").pixels);
+  }
+  EXPECT_NE(pictures[0], pictures[1]);
+}
+
 TEST_F(Export, FramesAskBeforeReplacingAndAShorterOneLeavesNoRest) {
   choose(ExportFormat::PngFrames);
   child<QLineEdit>(*m_dialog, "exportName")->setText("walk");
@@ -232,6 +245,23 @@ TEST_F(Export, FramesAskBeforeReplacingAndAShorterOneLeavesNoRest) {
   EXPECT_FALSE(pressAndAnswer(QMessageBox::Yes).isEmpty());
   EXPECT_EQ(written(), (std::vector<std::string>{"walk_0000.png", "walk_0001.png", "walk_0002.png",
                                                  "walk_0003.png"}));
+}
+
+TEST(Range, HoldsTheFramesAtItsEndsAndNoneBesideAClip) {
+  Clip clip;
+  clip.fps = 20.0;
+  clip.skeleton = std::make_shared<const Skeleton>(
+      Skeleton{.names = {"root"}, .parents = {-1}, .offsets = {Vec3::Zero()}});
+  clip.positions.assign(10, Vec3::Zero());
+  const auto frames = [&](double begin, double end) {
+    const FrameSpan span = framesIn(clip, TimeRange{begin, end});
+    return span.empty() ? std::pair{0, 0} : std::pair{span.first, span.last};
+  };
+  EXPECT_EQ(framesIn(clip, std::nullopt).last, 10);
+  EXPECT_EQ(frames(0.1, 0.3), (std::pair{2, 7}));
+  EXPECT_EQ(frames(0.11, 0.29), (std::pair{3, 6}));
+  EXPECT_EQ(frames(-1.0, 9.0), (std::pair{0, 10}));
+  EXPECT_EQ(frames(0.5, 0.9), (std::pair{0, 0}));
 }
 
 TEST_F(Export, OnlyTheMarkedRangeIsWritten) {

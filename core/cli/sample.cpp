@@ -5,6 +5,7 @@
 #include "families.h"
 
 #include "base/atomic_file.h"
+#include "base/memory.h"
 #include "cli/command.h"
 #include "cli/fit_report.h"
 #include "experiment/path_choice.h"
@@ -14,10 +15,10 @@ namespace marey::cli {
 namespace {
 
 /// Motions generated at once: bounds the memory, changes no result.
-constexpr int kBatch = 64;
+constexpr int kBatch = 128;
 
 struct Options {
-  std::string model, out, format = "bvh", start = "mean";
+  std::string model, out, format = "bvh", start = "mean", weights = "float32";
   PathChoice path;
   int samples = 1;
   double temperature = 1.0, warmUp = 1.0;
@@ -28,12 +29,13 @@ Json recipe(const Options& o, const MotionModel& model, const Context& context) 
           {"model", model.info().variant}, {"model_hash", model.info().hash},
           {"path", o.path.path},           {"seed", context.seed},
           {"temperature", o.temperature},  {"start", o.start},
-          {"warm_up_s", o.warmUp}};
+          {"warm_up_s", o.warmUp},         {"weights", o.weights}};
 }
 
 void run(Options& o, const Context& context) {
   o.path.startFromClip = o.start == "clip";
-  const auto model = loadModel(o.model, modelFamilies());
+  const auto model =
+      loadModel(o.model, modelFamilies(), {.weights = weightPrecisionNamed(o.weights)});
   SampleRequest request = requestFor(*model, o.path);
   request.seed = context.seed;
   request.temperature = o.temperature;
@@ -65,6 +67,7 @@ void run(Options& o, const Context& context) {
   Json result = {
       {"clips", names},
       {"frames_per_s", frames / seconds},
+      {"peak_memory_mb", peakMemoryMb()},
       {"seconds_each", static_cast<double>(request.path.size()) / model->info().features.fps}};
   fits.addTo(result);
   fits.tell(context);
@@ -110,6 +113,7 @@ void addSampleCommand(CLI::App& app, Context& context) {
                    "Seconds generated and dropped after a start from the mean pose")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  addWeightsOption(*command, o->weights);
   command->add_option("--format", o->format, "bvh, gltf, glb, npz or csv")
       ->check(CLI::IsMember({"bvh", "gltf", "glb", "npz", "csv"}))
       ->capture_default_str();

@@ -5,9 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <functional>
 #include <numeric>
 
 #include "base/atomic_file.h"
+#include "base/hash.h"
 
 namespace marey {
 namespace {
@@ -114,7 +117,28 @@ std::string textOf(const std::vector<int64_t>& shape) {
   return out + ")";
 }
 
-Tensor parseTensor(const std::string& key, const Json& entry, std::string_view data,
+/// Bytes that lie in memory or in a file: a file of many tensors is never held twice.
+struct Source {
+  uint64_t size = 0;
+  std::function<void(uint64_t offset, std::byte* to, size_t count)> read;
+};
+
+Source memorySource(std::string_view bytes) {
+  return {bytes.size(), [bytes](uint64_t offset, std::byte* to, size_t count) {
+            std::memcpy(to, bytes.data() + offset, count);
+          }};
+}
+
+Source fileSource(std::istream& in, uint64_t size, const std::string& path) {
+  return {size, [&in, path](uint64_t offset, std::byte* to, size_t count) {
+            in.seekg(static_cast<std::streamoff>(offset));
+            in.read(reinterpret_cast<char*>(to), static_cast<std::streamsize>(count));
+            if (!in) throw FileError(fmt::format("{}: cannot read to its end", path));
+          }};
+}
+
+/// `begin`: where the tensors' data begin in the source.
+Tensor parseTensor(const std::string& key, const Json& entry, const Source& source, uint64_t begin,
                    const std::string& origin) {
   const Place place{.path = origin, .item = "tensor '" + key + "'"};
   JsonReader reader(entry, origin, key + ".");
@@ -132,15 +156,67 @@ Tensor parseTensor(const std::string& key, const Json& entry, std::string_view d
       throw InputError(place, "a sensible shape", out.shapeText());
     count *= static_cast<uint64_t>(size);
   }
-  if (range.size() != 2 || range[0] > range[1] || range[1] > data.size())
-    throw InputError(place, fmt::format("data within {} bytes", data.size()),
+  if (range.size() != 2 || range[0] > range[1] || range[1] > source.size - begin)
+    throw InputError(place, fmt::format("data within {} bytes", source.size - begin),
                      "offsets beyond the file (is it cut?)");
   if (range[1] - range[0] != count * type->bytes)
     throwInput(place, fmt::format("{} bytes", count * type->bytes), "{} bytes",
                range[1] - range[0]);
   out.bytes.resize(range[1] - range[0]);
-  if (!out.bytes.empty()) std::memcpy(out.bytes.data(), data.data() + range[0], out.bytes.size());
+  if (!out.bytes.empty()) source.read(begin + range[0], out.bytes.data(), out.bytes.size());
   return out;
+}
+
+TensorFile parse(const Source& source, const std::string& origin) {
+  uint64_t headerSize = 0;
+  if (source.size < 8) throw InputError({.path = origin}, "a tensor file", "fewer than 8 bytes");
+  source.read(0, reinterpret_cast<std::byte*>(&headerSize), 8);
+  if (headerSize > source.size - 8)
+    throwInput({.path = origin}, fmt::format("a header within {} bytes", source.size - 8),
+               "a header of {} bytes (not a Marey file, or cut)", headerSize);
+  std::string text(headerSize, '\0');
+  if (headerSize > 0) source.read(8, reinterpret_cast<std::byte*>(text.data()), text.size());
+  const Json header = parseJson(text, origin);
+  if (!header.is_object())
+    throw InputError({.path = origin}, "a JSON object as header", header.type_name());
+  TensorFile out;
+  const uint64_t begin = 8 + headerSize, data = source.size - begin;
+  uint64_t described = 0;
+  for (const auto& [key, entry] : header.items()) {
+    if (key != "__metadata__") {
+      Tensor tensor = parseTensor(key, entry, source, begin, origin);
+      described += tensor.bytes.size();
+      if (described > data) break;  // overlapping: could unfold without bound
+      out.tensors.emplace(key, std::move(tensor));
+    } else if (entry.is_object() && entry.contains("marey") && entry["marey"].is_string()) {
+      out.metadata = parseJson(entry["marey"].get<std::string>(), origin + ", metadata");
+    }
+  }
+  if (described != data)
+    throwInput({.path = origin}, fmt::format("tensors that fill {} bytes", data), "{}{}",
+               described > data ? "more than " : "", std::min(described, data));
+  return out;
+}
+
+/// What comes before the tensors.
+std::string headOf(const TensorFile& file) {
+  Json header = Json::object();
+  header["__metadata__"] = {{"format", "marey"}, {"marey", jsonText(file.metadata)}};
+  uint64_t offset = 0;
+  for (const auto& [key, tensor] : file.tensors) {
+    header[key] = {{"dtype", name(tensor.dtype)},
+                   {"shape", tensor.shape},
+                   {"data_offsets", {offset, offset + tensor.bytes.size()}}};
+    offset += tensor.bytes.size();
+  }
+  std::string text = jsonText(header);
+  text.resize((text.size() + 7) / 8 * 8, ' ');
+  const uint64_t size = text.size();
+  return std::string(reinterpret_cast<const char*>(&size), 8) + text;
+}
+
+std::string_view viewOf(const Tensor& tensor) {
+  return {reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size()};
 }
 
 }  // namespace
@@ -201,61 +277,38 @@ const Tensor& TensorFile::get(const std::string& key, const std::vector<int64_t>
 }
 
 TensorFile parseTensorFile(std::string_view bytes, const std::string& origin) {
-  uint64_t headerSize = 0;
-  if (bytes.size() < 8) throw InputError({.path = origin}, "a tensor file", "fewer than 8 bytes");
-  std::memcpy(&headerSize, bytes.data(), 8);
-  if (headerSize > bytes.size() - 8)
-    throwInput({.path = origin}, fmt::format("a header within {} bytes", bytes.size()),
-               "a header of {} bytes (not a Marey file, or cut)", headerSize);
-  const Json header = parseJson(bytes.substr(8, headerSize), origin);
-  if (!header.is_object())
-    throw InputError({.path = origin}, "a JSON object as header", header.type_name());
-  TensorFile out;
-  const std::string_view data = bytes.substr(8 + headerSize);
-  size_t described = 0;
-  for (const auto& [key, entry] : header.items()) {
-    if (key != "__metadata__") {
-      Tensor tensor = parseTensor(key, entry, data, origin);
-      described += tensor.bytes.size();
-      if (described > data.size()) break;  // overlapping: could unfold without bound
-      out.tensors.emplace(key, std::move(tensor));
-    } else if (entry.is_object() && entry.contains("marey") && entry["marey"].is_string()) {
-      out.metadata = parseJson(entry["marey"].get<std::string>(), origin + ", metadata");
-    }
-  }
-  if (described != data.size())
-    throwInput({.path = origin}, fmt::format("tensors that fill {} bytes", data.size()), "{}{}",
-               described > data.size() ? "more than " : "", std::min(described, data.size()));
-  return out;
+  return parse(memorySource(bytes), origin);
 }
 
 TensorFile readTensorFile(const std::filesystem::path& path) {
-  return parseTensorFile(readFile(path), path.string());
+  std::error_code ec;
+  const uint64_t size =
+      std::filesystem::is_regular_file(path, ec) ? std::filesystem::file_size(path, ec) : 0;
+  std::ifstream in;
+  if (size > 0 && !ec) in.open(path, std::ios::binary);
+  // Pipes have no size; what cannot be read gets its message there.
+  if (!in.is_open()) return parseTensorFile(readFile(path), path.string());
+  return parse(fileSource(in, size, path.string()), path.string());
 }
 
 std::string serialise(const TensorFile& file) {
-  Json header = Json::object();
-  header["__metadata__"] = {{"format", "marey"}, {"marey", jsonText(file.metadata)}};
-  uint64_t offset = 0;
-  for (const auto& [key, tensor] : file.tensors) {
-    header[key] = {{"dtype", name(tensor.dtype)},
-                   {"shape", tensor.shape},
-                   {"data_offsets", {offset, offset + tensor.bytes.size()}}};
-    offset += tensor.bytes.size();
-  }
-  std::string text = jsonText(header);
-  text.resize((text.size() + 7) / 8 * 8, ' ');
-  const uint64_t size = text.size();
-  std::string out(reinterpret_cast<const char*>(&size), 8);
-  out.reserve(8 + text.size() + offset);
-  out += text;
-  for (const auto& [key, tensor] : file.tensors)
-    out.append(reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size());
+  std::string out = headOf(file);
+  for (const auto& [key, tensor] : file.tensors) out += viewOf(tensor);
   return out;
 }
 
+std::string contentHash(const TensorFile& file) {
+  const std::string head = headOf(file);
+  std::vector<std::string_view> parts{head};
+  for (const auto& [key, tensor] : file.tensors) parts.push_back(viewOf(tensor));
+  return contentHash(parts);
+}
+
 void writeTensorFile(const std::filesystem::path& path, const TensorFile& file) {
-  writeFileAtomically(path, serialise(file));
+  writeFileAtomically(path, [&](std::ostream& out) {
+    out << headOf(file);
+    for (const auto& [key, tensor] : file.tensors) out << viewOf(tensor);
+  });
 }
 
 }  // namespace marey

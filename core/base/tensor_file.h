@@ -54,5 +54,7 @@ TensorFile parseTensorFile(std::string_view bytes, const std::string& origin);
 /// Written atomically. Throws FileError.
 void writeTensorFile(const std::filesystem::path& path, const TensorFile& file);
 std::string serialise(const TensorFile& file);
+/// Hash of what `serialise` gives, without holding it.
+std::string contentHash(const TensorFile& file);
 
 }  // namespace marey

@@ -1,4 +1,4 @@
-// marey bench render: the fast path and the plain reference path, measured in one run.
+// marey bench; and of it render: the fast path and the plain reference path, measured in one run.
 #include <cstdio>
 #include <memory>
 
@@ -67,6 +67,7 @@ void addBenchCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
   auto* bench = app.add_subcommand("bench", "Measure speed on this machine");
   bench->require_subcommand(1);
+  addModelBenchCommands(*bench, context);
   auto* render = addCommand(*bench, context, "render", "How fast many skeletons are drawn",
                             "marey bench render --motions 1000 --detail lines",
                             [o, &context] { runRender(*o, context); });

@@ -12,6 +12,7 @@
 
 #include "base/job.h"
 #include "base/json.h"
+#include "model/motion_model.h"
 
 namespace marey::cli {
 
@@ -49,5 +50,11 @@ void addReportCommand(CLI::App& app, Context& context);
 void addRenderCommand(CLI::App& app, Context& context);
 void addModelCommand(CLI::App& app, Context& context);
 void addBenchCommand(CLI::App& app, Context& context);
+/// `bench sample` and `bench score`.
+void addModelBenchCommands(CLI::App& bench, Context& context);
+
+/// --weights: how the engine keeps a model's weights.
+void addWeightsOption(CLI::App& command, std::string& weights);
+WeightPrecision weightPrecisionNamed(const std::string& name);
 
 }  // namespace marey::cli

@@ -5,6 +5,7 @@
 #include "families.h"
 
 #include "base/atomic_file.h"
+#include "base/memory.h"
 #include "cli/command.h"
 #include "cli/fit_report.h"
 #include "experiment/path_choice.h"
@@ -15,10 +16,10 @@ namespace marey::cli {
 namespace {
 
 /// Motions generated at once: bounds the memory, changes no result.
-constexpr int kBatch = 64;
+constexpr int kBatch = 128;
 
 struct Options {
-  std::string model, out, format = "bvh", start = "mean";
+  std::string model, out, format = "bvh", start = "mean", weights = "float32";
   PathChoice path;
   int samples = 1;
   double temperature = 1.0, warmUp = 1.0;
@@ -31,12 +32,14 @@ Json recipe(const Options& o, const MotionModel& model, const Context& context) 
   out["path"] = o.path.path;
   out["start"] = o.start;
   out["warm_up_s"] = o.warmUp;
+  out["weights"] = o.weights;
   return out;
 }
 
 void run(Options& o, const Context& context) {
   o.path.startFromClip = o.start == "clip";
-  const auto model = loadModel(o.model, modelFamilies());
+  const auto model =
+      loadModel(o.model, modelFamilies(), {.weights = weightPrecisionNamed(o.weights)});
   SampleRequest request = requestFor(*model, o.path);
   request.seed = context.seed;
   request.temperature = o.temperature;
@@ -68,6 +71,7 @@ void run(Options& o, const Context& context) {
   Json result = {
       {"clips", names},
       {"frames_per_s", frames / seconds},
+      {"peak_memory_mb", peakMemoryMb()},
       {"seconds_each", static_cast<double>(request.path.size()) / model->info().features.fps}};
   fits.addTo(result);
   fits.tell(context);
@@ -113,6 +117,7 @@ void addSampleCommand(CLI::App& app, Context& context) {
                    "Seconds generated and dropped after a start from the mean pose")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  addWeightsOption(*command, o->weights);
   command->add_option("--format", o->format, "bvh, gltf, glb, npz or csv")
       ->check(CLI::IsMember({"bvh", "gltf", "glb", "npz", "csv"}))
       ->capture_default_str();

@@ -63,14 +63,16 @@ void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vec
     }
   }
   out.framesPerSecond = frames / seconds(begin);
+  std::vector<FeatureSequence> scored;
   for (size_t i = 0; i < natural.size(); ++i)
     for (const FeatureSequence& sequence : sampled[i]) {
-      if (sequence.frameCount() > model.info().context)
-        out.heldOutScores.push_back(scoreSequence(model, sequence));
+      if (sequence.frameCount() > model.info().context) scored.push_back(sequence);
       out.heldOut.push_back(sampledClip(model, sequence));
       out.heldOut.back().name = natural[i].name + "/" + sequence.name;
       out.heldOutPaths.push_back(requests[i].path);
     }
+  Progress scoring = progress.part(1.0, 1.0);
+  out.heldOutScores = scoreSequences(model, scored, false, scoring);
 }
 
 void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& out,
@@ -95,14 +97,17 @@ void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& ou
   }
 }
 
-void scoreNatural(const MotionModel& model, const std::vector<Clip>& natural, SystemResult& out) {
-  double sum = 0.0, frames = 0.0;
-  for (const Clip& clip : natural) {
+void scoreNatural(const MotionModel& model, const std::vector<Clip>& natural, SystemResult& out,
+                  Progress& progress) {
+  std::vector<Clip> clips;
+  for (const Clip& clip : natural)
     // A clip that is all context has no frame to score.
-    if (clip.frameCount() <= model.info().context) continue;
-    out.naturalScores.push_back(scoreClip(model, clip));
-    for (const double nats : out.naturalScores.back().loglikNats) sum += nats;
-    frames += static_cast<double>(out.naturalScores.back().loglikNats.size());
+    if (clip.frameCount() > model.info().context) clips.push_back(clip);
+  out.naturalScores = scoreClips(model, clips, false, progress);
+  double sum = 0.0, frames = 0.0;
+  for (const ClipScore& score : out.naturalScores) {
+    for (const double nats : score.loglikNats) sum += nats;
+    frames += static_cast<double>(score.loglikNats.size());
   }
   out.naturalNatsPerFrame = frames > 0 ? sum / frames : std::numeric_limits<double>::quiet_NaN();
 }
@@ -133,9 +138,9 @@ ExperimentResult runExperiment(const Experiment& experiment, std::span<const Mod
     SystemResult result{
         .name = system.name, .info = model->info(), .temperature = system.temperature};
     const double from = 0.05 + share * static_cast<double>(i);
-    Progress heldOut = progress.part(from, from + 0.5 * share),
+    Progress scoring = progress.part(from, from), heldOut = progress.part(from, from + 0.5 * share),
              paths = progress.part(from + 0.5 * share, from + share);
-    scoreNatural(*model, out.natural, result);
+    scoreNatural(*model, out.natural, result, scoring);
     if (experiment.heldOutSamples > 0)
       sampleHeldOut(*model, experiment, out.natural, result, heldOut);
     samplePaths(*model, experiment, result, paths);

@@ -101,10 +101,12 @@ SampleSet drawSampleSet(const MotionModel& model, const SampleRecipe& recipe, Pr
     const auto sequences = sampleSequences(model, request, part);
     spentS += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     std::vector<SampledMotion> motions;
-    for (const FeatureSequence& sequence : sequences) {
+    Progress scoring = part.part(1.0, 1.0);
+    const auto scores = scoreSequences(model, sequences, false, scoring);
+    for (size_t i = 0; i < sequences.size(); ++i) {
       progress.throwIfCancelled();
-      motions.push_back({std::make_shared<const Clip>(sampledClip(model, sequence)),
-                         scoreSequence(model, sequence)});
+      motions.push_back(
+          {std::make_shared<const Clip>(sampledClip(model, sequences[i])), scores[i]});
     }
     out.motions.insert(out.motions.end(), motions.begin(), motions.end());
     if (sink) sink(out.wanted, std::move(motions));

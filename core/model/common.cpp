@@ -52,13 +52,26 @@ const ModelFamily& familyNamed(const std::string& name, std::span<const ModelFam
 }
 
 std::unique_ptr<MotionModel> loadModel(const std::string& path,
-                                       std::span<const ModelFamily> families) {
-  const TensorFile file = readTensorFile(path);
+                                       std::span<const ModelFamily> families,
+                                       const LoadOptions& options) {
+  TensorFile file = readTensorFile(path);
   JsonReader reader(file.metadata, path);
   if (reader.optional<std::string>("kind", "") != "model")
     throw InputError({.path = path}, "a Marey model",
                      "a file of kind '" + reader.optional<std::string>("kind", "unknown") + "'");
-  return familyNamed(reader.required<std::string>("family"), families, path).load(file, path);
+  const ModelFamily& family = familyNamed(reader.required<std::string>("family"), families, path);
+  return family.load(std::move(file), path, options);
+}
+
+std::vector<SequenceScore> MotionModel::observeMany(std::span<RolloutState> states,
+                                                    std::span<const ObservedSequence> sequences,
+                                                    const std::function<void()>& between) const {
+  std::vector<SequenceScore> out;
+  for (size_t i = 0; i < sequences.size(); ++i) {
+    between();
+    out.push_back(observe(states[i], *sequences[i].poses, *sequences[i].controls));
+  }
+  return out;
 }
 
 Json toJson(const FeatureSpec& spec) {
@@ -160,7 +173,7 @@ ModelInfo loadCommon(const TensorFile& file, const std::string& origin) {
         loadVector(file, "standardiser/control_mean", out.controlDim, origin, false),
         loadVector(file, "standardiser/control_std", out.controlDim, origin, true)};
   }
-  out.hash = contentHash(serialise(file));
+  out.hash = contentHash(file);
   return out;
 }
 

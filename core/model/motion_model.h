@@ -54,6 +54,23 @@ struct SequenceScore {
   std::vector<double> loglikNats;  ///< [T], density of standardised poses
 };
 
+/// Poses [T, D] and controls [context + T + lookahead, C] of a sequence that is being observed.
+struct ObservedSequence {
+  const Matrix* poses = nullptr;
+  const Matrix* controls = nullptr;
+};
+
+/// How a model computes. The engine's results are the same bits for any batch and thread count on
+/// one machine; the reference is the family's plain libtorch path, which it is tested against.
+enum class Execution { Engine, Reference };
+/// How the engine keeps weights: in 16 bits (bfloat16) they take half the memory and half the time
+/// to read, which is what bounds a single motion; results then differ from the model's own.
+enum class WeightPrecision { Float32, BFloat16 };
+struct LoadOptions {
+  Execution execution = Execution::Engine;
+  WeightPrecision weights = WeightPrecision::Float32;
+};
+
 /// Thread rule: const functions may run at the same time on different states.
 class MotionModel {
  public:
@@ -71,6 +88,12 @@ class MotionModel {
   /// batch of one, continuing from `state`.
   virtual SequenceScore observe(RolloutState& state, const Matrix& poses,
                                 const Matrix& controls) const = 0;
+  /// The same for many sequences, each with the state of a batch of one. Where a family has a way
+  /// to advance them together it does, and a sequence's result does not depend on the others.
+  /// `between` is called every few frames and may throw; the states are then of no use.
+  virtual std::vector<SequenceScore> observeMany(std::span<RolloutState> states,
+                                                 std::span<const ObservedSequence> sequences,
+                                                 const std::function<void()>& between) const;
   /// Degrees of freedom of a Student-t base; 0 for a standard normal.
   virtual double baseDegreesOfFreedom() const = 0;
   /// Weights, standardiser and configuration as they are stored.
@@ -96,8 +119,10 @@ struct Trainee {
 struct ModelFamily {
   std::string name;
   /// From a stored model. Strict: unknown, missing, mis-shaped or non-finite tensors throw
-  /// InputError naming `origin`.
-  std::function<std::unique_ptr<MotionModel>(const TensorFile&, const std::string& origin)> load;
+  /// InputError naming `origin`. The file is handed over, so that weights are held once.
+  std::function<std::unique_ptr<MotionModel>(TensorFile, const std::string& origin,
+                                             const LoadOptions& options)>
+      load;
   /// Number of trainable parameters of a configuration, without building data.
   std::function<ModelInfo(const Json& config, const std::string& origin)> describe;
   /// Random weights from `seed`.
@@ -108,7 +133,8 @@ struct ModelFamily {
 
 /// Stored models carry "family" in their metadata. Throws InputError for unknown families.
 std::unique_ptr<MotionModel> loadModel(const std::string& path,
-                                       std::span<const ModelFamily> families);
+                                       std::span<const ModelFamily> families,
+                                       const LoadOptions& options = {});
 const ModelFamily& familyNamed(const std::string& name, std::span<const ModelFamily> families,
                                const std::string& origin);
 

@@ -1,8 +1,10 @@
 // Log-likelihood of every frame of a clip under a model.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "base/job.h"
 #include "model/motion_model.h"
 
 namespace marey {
@@ -16,6 +18,15 @@ struct ClipScore {
   double bitsPerDimension = 0.0;   ///< mean, -log2 p / D
   double meanNatsPerFrame() const;
 };
+
+/// Scores of many sequences, which advance together where the model can; a sequence's score does
+/// not depend on the others. Throws as scoreSequence; CancelledError within a frame's time.
+std::vector<ClipScore> scoreSequences(const MotionModel& model,
+                                      std::span<const FeatureSequence> sequences, bool standardised,
+                                      Progress& progress);
+/// The same for clips, as scoreClip does.
+std::vector<ClipScore> scoreClips(const MotionModel& model, std::span<const Clip> clips,
+                                  bool standardised, Progress& progress);
 
 /// Scores features as they are: what a sampled motion was made of, with the control that it
 /// was given. Throws InputError when the sequence is not longer than the model's context.

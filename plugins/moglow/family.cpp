@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "model/weights.h"
-#include "moglow/model.h"
+#include "moglow/engine_model.h"
+#include "moglow/reference_model.h"
+#include "moglow/stored_weights.h"
 #include "motion/roles.h"
 
 namespace marey::moglow {
@@ -64,15 +66,25 @@ BodyFacts bodyFacts(const Skeleton* skeleton, const Standardiser& s) {
   return out;
 }
 
-std::unique_ptr<MotionModel> load(const TensorFile& file, const std::string& origin) {
+std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
+                                  const LoadOptions& options) {
   ModelInfo info = loadCommon(file, origin);
   const Config config = configFromJson(info.config, origin);
   if (config.poseDim != info.poseDim || config.controlDim != info.controlDim)
     throwInput({.path = origin}, "a configuration of the stored dimensions", "{}/{} beside {}/{}",
                config.poseDim, config.controlDim, info.poseDim, info.controlDim);
-  auto net = std::make_shared<Net>(config, bodyFacts(info.skeleton.get(), info.standardiser), 0);
-  loadWeights(*net, file, origin);
-  return std::make_unique<Model>(completed(std::move(info), config), std::move(net));
+  const BodyFacts body = bodyFacts(info.skeleton.get(), info.standardiser);
+  if (options.execution == Execution::Reference) {
+    auto net = std::make_shared<Net>(config, body, 0);
+    loadWeights(*net, file, origin);
+    return std::make_unique<ReferenceModel>(completed(std::move(info), config), std::move(net));
+  }
+  checkFlow(config, file, origin);
+  auto base = loadBase(config, body, file, origin);
+  const auto precision = options.weights == WeightPrecision::BFloat16 ? nn::Precision::BFloat16
+                                                                      : nn::Precision::Float32;
+  return std::make_unique<EngineModel>(completed(std::move(info), config), config, std::move(file),
+                                       std::move(base), precision, origin);
 }
 
 Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const TraineeData& data,

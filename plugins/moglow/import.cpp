@@ -2,7 +2,7 @@
 
 #include "model/weights.h"
 #include "moglow/family.h"
-#include "moglow/model.h"
+#include "moglow/reference_model.h"
 #include "nn/torch_pickle.h"
 
 namespace marey::moglow {
@@ -111,7 +111,7 @@ std::unique_ptr<MotionModel> importCheckpoint(const std::string& checkpoint, con
   info.standardiser = standardiser;
   info.provenance = {{"imported_from", checkpoint.substr(checkpoint.rfind('/') + 1)},
                      {"standardiser", standardiser.empty() ? "none" : "refitted"}};
-  return std::make_unique<Model>(std::move(info), std::move(net));
+  return std::make_unique<ReferenceModel>(std::move(info), std::move(net));
 }
 
 }  // namespace marey::moglow

@@ -1,5 +1,7 @@
 """marey bench: what it measures and how it says so."""
-from support import Case, main, marey
+import json
+
+from support import TINY_CONFIG, Case, main, marey
 
 
 class Bench(Case):
@@ -18,6 +20,38 @@ class Bench(Case):
                                result["ms_per_frame"], places=3)
         self.assertLess(result["fill_ms"], result["ms_per_frame"])
 
+    def model_bench(self, what, *more):
+        config = self.dir / "tiny.json"
+        config.write_text(json.dumps(TINY_CONFIG))
+        result = self.run_json("bench", what, "--config", config, "--frames", 12, *more)
+        for key in ("ms_per_frame", "best_ms_per_frame", "frames_per_s", "gflops",
+                    "sgemm_gflops", "share_of_sgemm", "weight_gb_s", "read_gb_s",
+                    "share_of_read"):
+            self.assertIsInstance(result[key], float, key)
+            self.assertGreater(result[key], 0.0, key)
+        self.assertAlmostEqual(result["share_of_sgemm"], result["gflops"] /
+                               result["sgemm_gflops"], places=6)
+        self.assertAlmostEqual(result["frames_per_s"] * result["ms_per_frame"],
+                               1000.0 * result["batch"], places=3)
+        self.assertAlmostEqual(
+            result["gflops"], 2e-9 * result["parameters"] * result["frames_per_s"], places=6)
+        return result
+
+    def test_sampling_and_scoring_measure_both_paths_and_find_them_equal(self):
+        for what in ("sample", "score"):
+            result = self.model_bench(what, "--batch", 5)
+            self.assertEqual((result["batch"], result["weights"]), (5, "float32"))
+            self.assertAlmostEqual(result["ratio"], result["reference_ms_per_frame"] /
+                                   result["ms_per_frame"], places=6)
+            # Nats are about a hundred, poses about one.
+            self.assertLess(result["max_abs_difference"], 1e-5 if what == "sample" else 1e-3)
+
+    def test_sixteen_bits_differ_and_the_plain_path_can_be_left_out(self):
+        rounded = self.model_bench("sample", "--weights", "bf16")
+        self.assertGreater(rounded["max_abs_difference"], 1e-6)
+        self.assertLess(rounded["max_abs_difference"], 0.5)
+        self.assertNotIn("ratio", self.model_bench("score", "--no-reference"))
+
     def test_a_crowd_becomes_lines(self):
         words = ["bench", "render", "--frames", "1", "--size", "64x64"]
         self.assertEqual(self.run_json(*words, "--motions", "2")["drawn_as"], "capsules")
@@ -25,6 +59,8 @@ class Bench(Case):
 
     def test_wrong_usage_is_refused(self):
         for words in ([], ["render", "--motions", "0"], ["render", "--frames", "0"],
+                      ["sample"], ["score", "--config", "x.json", "--batch", "0"],
+                      ["sample", "--config", "x.json", "--weights", "int3"],
                       ["render", "--detail", "blobs"], ["render", "--size", "1280"],
                       ["render", "--size", "8x8"]):
             with self.subTest(words=words):

@@ -31,10 +31,10 @@ TINY_CONFIG = {
 }
 
 
-def marey(*words, timeout=50, cwd=None):
-    """The finished process; words may be paths."""
+def marey(*words, timeout=50, cwd=None, env=None):
+    """The finished process; words may be paths, `env` is added to the environment."""
     return subprocess.run([BINARY, *map(str, words)], capture_output=True, text=True,
-                          timeout=timeout, cwd=cwd, check=False)
+                          timeout=timeout, cwd=cwd, check=False, env={**os.environ, **(env or {})})
 
 
 def listing(folder):

@@ -1,9 +1,13 @@
 """What a killed run, a repeated run and a prolonged run have in common: the same numbers."""
+import io
 import math
+import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import time
+import zipfile
 
 from support import BINARY, Case, SharedModelCase, main, marey, read_tensors
 
@@ -101,13 +105,17 @@ class KilledTraining(Case):
         self.assert_refused(train, "state.marey", "nothing to resume")
 
 
+SHIPPED = pathlib.Path(__file__).parents[2] / "resources/models/moglow-plus-small.marey"
+
+
 class Sampling(SharedModelCase):
-    def sample(self, name, count, *more):
+    def sample(self, name, count, *more, model=None, env=None):
         out = self.dir / name
-        done = marey("sample", self.model, "--path", "preset:figure-eight", "--seconds", 1, "-n",
-                     count, "--out", out, "--quiet", *more)
+        done = marey("sample", model or self.model, "--path", "preset:figure-eight", "--seconds",
+                     1, "-n", count, "--out", out, "--quiet", *more, env=env)
         self.assertEqual(done.returncode, 0, done.stderr)
-        clips = {p.name: p.read_bytes() for p in out.glob("*.bvh")}
+        form = more[more.index("--format") + 1] if "--format" in more else "bvh"
+        clips = {p.name: p.read_bytes() for p in out.glob(f"sample_*.{form}")}
         self.assertEqual(len(clips), count)
         return clips
 
@@ -119,27 +127,45 @@ class Sampling(SharedModelCase):
             self.assertNotEqual(content, other[name])
         self.assertEqual(len(set(first.values())), 3)
 
-    def test_fewer_samples_are_the_first_of_more_whatever_the_threads(self):
-        # Latents are the same bits; matrix products of other shapes round the poses differently.
-        few = self.positions("few", 3, "--threads", 1)
-        many = self.positions("many", 5, "--threads", 2)
-        for name, rows in few.items():
-            self.assertEqual(len(rows), len(many[name]))
-            for a, b in zip(rows, many[name]):
-                self.assertAlmostEqual(a, b, delta=1e-5)
-        self.assertGreater(max(abs(a - b) for a, b in zip(many["sample_000.csv"],
-                                                          many["sample_001.csv"])), 1e-3)
+    def assert_few_are_the_first_of_many(self, model, env):
+        for form in ("bvh", "npz"):
+            few = self.positions(self.sample(f"few-{form}", 3, "--seed", 4, "--threads", 1,
+                                             "--format", form, model=model, env=env))
+            many = self.positions(self.sample(f"many-{form}", 5, "--seed", 4, "--threads", 2,
+                                              "--format", form, model=model, env=env))
+            self.assertEqual(few, {name: many[name] for name in few}, form)
+            self.assertEqual(len(set(many.values())), 5)
+            shutil.rmtree(self.dir / f"few-{form}")
+            shutil.rmtree(self.dir / f"many-{form}")
 
-    def positions(self, name, count, *more):
-        """{file: every coordinate in metres}"""
-        out = self.dir / name
-        done = marey("sample", self.model, "--path", "preset:figure-eight", "--seconds", 1, "-n",
-                     count, "--out", out, "--format", "csv", "--seed", 4, "--quiet", *more)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        found = {p.name: [float(v) for line in p.read_text().splitlines()[1:]
-                          for v in line.split(",")[3:]] for p in out.glob("*.csv")}
-        self.assertEqual(len(found), count)
-        return found
+    @staticmethod
+    def positions(clips):
+        """Of archives the positions alone: their recipes hold the command."""
+        out = {}
+        for name, content in clips.items():
+            if name.endswith(".npz"):
+                with zipfile.ZipFile(io.BytesIO(content)) as archive:
+                    content = archive.read("positions.npy")
+            out[name] = content
+        return out
+
+    def test_fewer_samples_are_the_first_of_more_whatever_the_threads(self):
+        self.assert_few_are_the_first_of_many(self.model, None)
+
+    def test_so_they_are_with_a_base_below_the_flow_and_with_other_blas_kernels(self):
+        for env in (None, {"OPENBLAS_CORETYPE": "Haswell"}):
+            with self.subTest(env=env):
+                self.assert_few_are_the_first_of_many(SHIPPED, env)
+
+    def test_sixteen_bits_come_close_and_are_named_in_the_recipe(self):
+        full = self.sample("full", 1, "--seed", 4, "--format", "csv")
+        rounded = self.sample("rounded", 1, "--seed", 4, "--format", "csv", "--weights", "bf16")
+        numbers = [[float(v) for line in clips["sample_000.csv"].decode().splitlines()[1:]
+                    for v in line.split(",")] for clips in (full, rounded)]
+        worst = max(abs(a - b) for a, b in zip(*numbers))
+        self.assertEqual(len(numbers[0]), len(numbers[1]))
+        self.assertLess(worst, 0.2)
+        self.assertGreater(worst, 0.0)
 
     def test_temperature_zero_leaves_nothing_random(self):
         cold = self.sample("cold", 2, "--temperature", 0)

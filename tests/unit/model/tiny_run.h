@@ -77,7 +77,7 @@ inline const TensorFile& tinyFile() {
 }
 
 inline const MotionModel& tinyModel() {
-  static const auto model = moglow::family().load(tinyFile(), "tiny.marey");
+  static const auto model = moglow::family().load(tinyFile(), "tiny.marey", {});
   return *model;
 }
 

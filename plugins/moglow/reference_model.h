@@ -1,4 +1,5 @@
-// MoGlow behind the MotionModel interface.
+// MoGlow behind the MotionModel interface, on libtorch: the plain path that the engine is tested
+// and measured against.
 #pragma once
 
 #include <memory>
@@ -8,9 +9,9 @@
 
 namespace marey::moglow {
 
-class Model : public MotionModel {
+class ReferenceModel : public MotionModel {
  public:
-  Model(ModelInfo info, std::shared_ptr<Net> net);
+  ReferenceModel(ModelInfo info, std::shared_ptr<Net> net);
   const ModelInfo& info() const override { return m_info; }
   RolloutState start(int batch, const Matrix& history) const override;
   Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,

@@ -1,4 +1,4 @@
-#include "moglow/model.h"
+#include "moglow/reference_model.h"
 
 #include <utility>
 
@@ -29,7 +29,7 @@ torch::Tensor vectorOr(const std::vector<float>& values, int size, float fallbac
 
 }  // namespace
 
-Model::Model(ModelInfo info, std::shared_ptr<Net> net)
+ReferenceModel::ReferenceModel(ModelInfo info, std::shared_ptr<Net> net)
     : m_info(std::move(info)), m_net(std::move(net)) {
   m_net->eval();
   const auto& s = m_info.standardiser;
@@ -39,7 +39,7 @@ Model::Model(ModelInfo info, std::shared_ptr<Net> net)
   m_controlStd = vectorOr(s.controlStd, m_info.controlDim, 1.f);
 }
 
-RolloutState Model::start(int batch, const Matrix& history) const {
+RolloutState ReferenceModel::start(int batch, const Matrix& history) const {
   const c10::InferenceMode guard;
   const int64_t tau = m_info.context, d = m_info.poseDim;
   Rollout out;
@@ -49,8 +49,8 @@ RolloutState Model::start(int batch, const Matrix& history) const {
   return {out};
 }
 
-Matrix Model::sampleFrame(RolloutState& state, const Matrix& controlWindow,
-                          const Matrix& latent) const {
+Matrix ReferenceModel::sampleFrame(RolloutState& state, const Matrix& controlWindow,
+                                   const Matrix& latent) const {
   const c10::InferenceMode guard;
   auto& rollout = std::any_cast<Rollout&>(state.value);
   const int64_t batch = rollout.history.size(0);
@@ -62,8 +62,8 @@ Matrix Model::sampleFrame(RolloutState& state, const Matrix& controlWindow,
   return toMatrix(x.squeeze(1) * m_poseStd + m_poseMean);
 }
 
-SequenceScore Model::observe(RolloutState& state, const Matrix& poses,
-                             const Matrix& controls) const {
+SequenceScore ReferenceModel::observe(RolloutState& state, const Matrix& poses,
+                                      const Matrix& controls) const {
   const c10::InferenceMode guard;
   auto& rollout = std::any_cast<Rollout&>(state.value);
   const auto x = (toTensor(poses).unsqueeze(0) - m_poseMean) / m_poseStd;
@@ -80,7 +80,7 @@ SequenceScore Model::observe(RolloutState& state, const Matrix& poses,
   return out;
 }
 
-TensorFile Model::save() const {
+TensorFile ReferenceModel::save() const {
   TensorFile file;
   storeCommon(m_info, file);
   storeWeights(*m_net, file);

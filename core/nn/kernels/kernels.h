@@ -1,0 +1,83 @@
+// The inner loops of the engine, one set per instruction set, chosen at run time. No libtorch type
+// and no allocation in here.
+//
+// Promise of every function: what it writes for one row depends on that row's values alone, never
+// on how many rows are given, where a row stands among them or which thread runs it. Products add
+// each output up in one chain over the inputs, in their order; general BLAS libraries choose
+// another order for another shape. Avx2 and Avx512 use the same operations in the same order and
+// give the same bits; Generic has no fused multiply-add and gives others.
+#pragma once
+
+#include <cstddef>
+
+namespace marey::nn {
+
+enum class Isa { Generic, Avx2, Avx512 };
+
+/// Columns of a panel of packed weights.
+constexpr long kPanel = 32;
+/// Lanes of a vector; recurrent units and flow channels go in blocks of this many.
+constexpr long kLanes = 16;
+
+/// A run of `count` consecutive inputs of every row.
+struct Inputs {
+  const float* values = nullptr;
+  long stride = 0;  ///< floats from row to row
+  long count = 0;
+};
+
+/// out[r][0..31] = start[r][0..31] + sum over the inputs of row r times the panel's rows.
+struct PanelProduct {
+  const Inputs* inputs = nullptr;
+  int runs = 0;
+  const std::byte* panel = nullptr;  ///< [sum of counts, 32], float or bf16 (packed_matrix.h)
+  const std::byte* next = nullptr;   ///< panel that will be wanted next; fetched meanwhile
+  const float* start = nullptr;
+  long startStride = 0;  ///< 0: the same for every row
+  float* out = nullptr;
+  long outStride = 0;
+  long rows = 0;
+};
+
+/// A block of `kLanes` recurrent units. Gates [rows, 64] in four groups of 16: LSTM i, f, g, o;
+/// GRU r, z, what the input gives to n, what the state gives to n (PyTorch's definitions).
+struct GateBlock {
+  const float* gates = nullptr;
+  const float* previous = nullptr;  ///< [rows, 16] hidden, `stride` apart (GRU)
+  float* cell = nullptr;            ///< [rows, 16], `stride` apart, updated in place (LSTM)
+  float* hidden = nullptr;          ///< [rows, 16], `stride` apart
+  long stride = 0, previousStride = 0, cellStride = 0;
+  long rows = 0;
+};
+
+/// A block of `kLanes` channels of an affine coupling; `net` [rows, 32]: 16 shifts, 16 raw scales;
+/// scale = sigmoid(raw + 2) + 1e-6.
+struct CouplingBlock {
+  const float* net = nullptr;
+  float* channels = nullptr;  ///< [rows, 16], `stride` apart, changed in place
+  long stride = 0;
+  float* scales = nullptr;  ///< [rows, 16] or null: where toLatent leaves its scales
+  long rows = 0;
+};
+
+struct Kernels {
+  const char* name;
+  void (*product)(const PanelProduct&);
+  void (*productBf16)(const PanelProduct&);
+  void (*lstm)(const GateBlock&);
+  void (*gru)(const GateBlock&);
+  void (*relu)(float* values, long stride, long rows);  ///< [rows, 32] in place
+  void (*toData)(const CouplingBlock&);                 ///< z2 / scale - shift
+  void (*toLatent)(const CouplingBlock&);               ///< (z2 + shift) * scale
+  /// 1 / (1 + exp(-x)) and tanh(x) of `blocks` * 16 values: within 4 ulp of the exact value
+  /// (sigmoid of arguments below -87 is not smaller than that of -87).
+  void (*sigmoid)(const float* x, float* y, long blocks);
+  void (*tanh)(const float* x, float* y, long blocks);
+};
+
+/// The best set that this processor runs.
+const Kernels& kernels();
+/// One particular set, for tests; null where this build or processor lacks it.
+const Kernels* kernelsFor(Isa isa);
+
+}  // namespace marey::nn

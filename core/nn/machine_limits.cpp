@@ -1,0 +1,70 @@
+#include "nn/machine_limits.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "nn/kernels/kernels.h"
+#include "nn/team.h"
+#include "nn/torch.h"
+
+namespace marey::nn {
+namespace {
+
+double seconds(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+double measureSgemm() {
+  constexpr int64_t kSize = 1536;
+  const c10::InferenceMode guard;
+  const auto a = torch::ones({kSize, kSize}), b = torch::ones({kSize, kSize});
+  auto out = torch::empty({kSize, kSize});
+  torch::mm_out(out, a, b);
+  double best = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    torch::mm_out(out, a, b);
+    best = std::min(best, seconds(begin));
+  }
+  return 2.0 * kSize * kSize * kSize / best * 1e-9;
+}
+
+ReadSpeed::ReadSpeed(size_t bytes) : m_values(bytes / sizeof(float)) {
+  // Pages that nobody has written are all the same one.
+  std::fill_n(m_values.data(), m_values.size(), 1.f);
+}
+
+double ReadSpeed::measure() const {
+  const Kernels& k = kernels();
+  const auto rows = static_cast<long>(m_values.size()) / kPanel;
+  double best = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    runTeam(teamThreads(), [&](Team team) {
+      const auto [first, last] = team.share(rows);
+      // Products of one row read their weights once and do hardly anything else.
+      alignas(64) float sums[kPanel] = {};
+      constexpr long kRun = 256;
+      alignas(64) float ones[kRun];
+      std::fill(ones, ones + kRun, 1.f);
+      for (long row = first; row < last; row += kRun) {
+        const Inputs run{ones, kRun, std::min(kRun, last - row)};
+        const auto* panel = reinterpret_cast<const std::byte*>(m_values.data() + row * kPanel);
+        k.product({.inputs = &run,
+                   .runs = 1,
+                   .panel = panel,
+                   .next = panel,
+                   .start = sums,
+                   .out = sums,
+                   .outStride = kPanel,
+                   .rows = 1});
+      }
+    });
+    best = std::min(best, seconds(begin));
+  }
+  return static_cast<double>(m_values.size()) * sizeof(float) / best * 1e-9;
+}
+
+}  // namespace marey::nn

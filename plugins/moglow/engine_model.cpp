@@ -1,0 +1,117 @@
+#include "moglow/engine_model.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
+#include "moglow/engine_rollout.h"
+
+namespace marey::moglow {
+namespace {
+
+Standardiser unitsOf(const ModelInfo& info) {
+  const auto filled = [](const std::vector<float>& values, int size, float fallback) {
+    return values.empty() ? std::vector<float>(static_cast<size_t>(size), fallback) : values;
+  };
+  const Standardiser& s = info.standardiser;
+  return {filled(s.poseMean, info.poseDim, 0.f), filled(s.poseStd, info.poseDim, 1.f),
+          filled(s.controlMean, info.controlDim, 0.f), filled(s.controlStd, info.controlDim, 1.f)};
+}
+
+void checkShape(const char* what, const Matrix& m, long rows, long columns) {
+  if (m.rows() != rows || m.cols() != columns)
+    throwInput({.path = what}, fmt::format("{} x {}", rows, columns), "{} x {}", m.rows(),
+               m.cols());
+}
+
+}  // namespace
+
+EngineModel::EngineModel(ModelInfo info, const Config& config, TensorFile file,
+                         std::shared_ptr<PoseBase> base, nn::Precision precision,
+                         const std::string& origin)
+    : m_info(std::move(info)),
+      m_config(config),
+      m_units(unitsOf(m_info)),
+      m_kept(std::move(file)),
+      m_flow(config, m_kept, precision, origin) {
+  if (base) m_base = std::make_unique<const BaseBlocks>(std::move(base));
+}
+
+EngineModel::~EngineModel() = default;
+
+RolloutState EngineModel::start(int batch, const Matrix& history) const {
+  const auto rows = static_cast<size_t>(batch);
+  Rollout out{.history = nn::AlignedFloats(rows * static_cast<size_t>(historyWidth())),
+              .control = nn::AlignedFloats(rows * static_cast<size_t>(controlWidth())),
+              .features = nn::AlignedFloats(rows * static_cast<size_t>(featureWidth())),
+              .pose = nn::AlignedFloats(m_base ? rows * static_cast<size_t>(m_config.poseDim) : 0),
+              .flow = m_flow.start(batch)};
+  if (history.rows() > 0) {
+    checkShape("history", history, batch, historyWidth());
+    standardise(history.data(), history.size(), m_units.poseMean, m_units.poseStd,
+                out.history.data());
+  }
+  return {std::move(out)};
+}
+
+Matrix EngineModel::sampleFrame(RolloutState& state, const Matrix& controlWindow,
+                                const Matrix& latent) const {
+  auto& r = std::any_cast<Rollout&>(state.value);
+  const long rows = r.flow.rows, d = m_config.poseDim, passed = m_config.passedChannels(),
+             stride = m_flow.stride(), width = historyWidth();
+  checkShape("control window", controlWindow, rows, controlWidth());
+  checkShape("latent", latent, rows, d);
+  standardise(controlWindow.data(), controlWindow.size(), m_units.controlMean, m_units.controlStd,
+              r.control.data());
+  const std::array<nn::Inputs, 2> plain{
+      {{r.history.data(), width, width}, {r.control.data(), controlWidth(), controlWidth()}}};
+  const nn::Inputs seen{r.features.data(), featureWidth(), featureWidth()};
+  BaseBlocks::Seen foreseen;
+  if (m_base)
+    foreseen = m_base->foresee(rows, r.history.data(), width, r.control.data(), controlWidth(),
+                               r.features.data(), featureWidth());
+  for (long b = 0; b < rows; ++b) {
+    const float* z = latent.row(b).data();
+    std::copy(z + passed, z + d, r.flow.values.data() + b * stride);
+    // The passed channels are the last of what the nets see.
+    if (passed > 0) std::copy(z, z + passed, r.features.data() + (b + 1) * featureWidth() - passed);
+  }
+  m_flow.toData(r.flow, m_base ? std::span<const nn::Inputs>(&seen, 1) : plain);
+  Matrix out(rows, d);
+  for (long b = 0; b < rows; ++b) {
+    std::copy(latent.row(b).data(), latent.row(b).data() + passed, out.row(b).data());
+    std::copy(r.flow.values.data() + b * stride, r.flow.values.data() + b * stride + d - passed,
+              out.row(b).data() + passed);
+  }
+  if (m_base) {
+    m_base->toPose(foreseen, out.data(), r.pose.data(), d);
+    std::copy(r.pose.data(), r.pose.data() + rows * d, out.data());
+  }
+  for (long b = 0; b < rows; ++b) {
+    float *history = r.history.data() + b * width, *pose = out.row(b).data();
+    std::copy(history + d, history + width, history);
+    std::copy(pose, pose + d, history + width - d);
+    for (long j = 0; j < d; ++j)
+      pose[j] = pose[j] * m_units.poseStd[static_cast<size_t>(j)] +
+                m_units.poseMean[static_cast<size_t>(j)];
+  }
+  return out;
+}
+
+SequenceScore EngineModel::observe(RolloutState& state, const Matrix& poses,
+                                   const Matrix& controls) const {
+  const ObservedSequence one{&poses, &controls};
+  return std::move(observeMany({&state, 1}, {&one, 1}, [] {}).front());
+}
+
+TensorFile EngineModel::save() const {
+  if (m_flow.precision() != nn::Precision::Float32)
+    throw InputError({.path = m_info.variant}, "weights loaded in full precision", "rounded ones");
+  TensorFile file = m_kept;
+  m_flow.restore(file);
+  file.metadata = Json::object();
+  storeCommon(m_info, file);
+  return file;
+}
+
+}  // namespace marey::moglow

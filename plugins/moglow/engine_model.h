@@ -1,0 +1,52 @@
+// MoGlow behind the MotionModel interface, on the flow engine. A base below the flow stays in
+// libtorch, in blocks whose results do not depend on batch or threads.
+#pragma once
+
+#include <memory>
+
+#include "model/motion_model.h"
+#include "moglow/base_blocks.h"
+#include "moglow/flow_engine.h"
+
+namespace marey::moglow {
+
+class EngineModel : public MotionModel {
+ public:
+  /// `file` holds the checked weights; the flow's large ones are kept packed only. `base`: null
+  /// without one. Throws InputError for a singular linear layer.
+  EngineModel(ModelInfo info, const Config& config, TensorFile file, std::shared_ptr<PoseBase> base,
+              nn::Precision precision, const std::string& origin);
+  ~EngineModel() override;
+
+  const ModelInfo& info() const override { return m_info; }
+  RolloutState start(int batch, const Matrix& history) const override;
+  Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,
+                     const Matrix& latent) const override;
+  SequenceScore observe(RolloutState& state, const Matrix& poses,
+                        const Matrix& controls) const override;
+  std::vector<SequenceScore> observeMany(std::span<RolloutState> states,
+                                         std::span<const ObservedSequence> sequences,
+                                         const std::function<void()>& between) const override;
+  double baseDegreesOfFreedom() const override { return m_config.degreesOfFreedom(); }
+  /// Throws InputError when the weights were rounded on loading.
+  TensorFile save() const override;
+
+ private:
+  struct Rollout;
+  class Observation;
+  long historyWidth() const { return static_cast<long>(m_config.tau) * m_config.poseDim; }
+  long controlWidth() const {
+    return static_cast<long>(m_config.tau + 1 + m_config.lookahead) * m_config.controlDim;
+  }
+  /// Columns of what the base and the flow's passed channels give to the nets.
+  long featureWidth() const { return m_base ? m_config.conditioning() : 0; }
+
+  ModelInfo m_info;
+  Config m_config;
+  Standardiser m_units;  ///< zeros and ones where the model has none
+  TensorFile m_kept;     ///< everything but what is packed
+  FlowEngine m_flow;
+  std::unique_ptr<const BaseBlocks> m_base;
+};
+
+}  // namespace marey::moglow

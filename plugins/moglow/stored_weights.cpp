@@ -1,0 +1,56 @@
+#include "moglow/stored_weights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "model/weights.h"
+#include "moglow/flow_engine.h"
+
+namespace marey::moglow {
+namespace {
+
+const std::string kStored = "weights/", kBase = "weights/base.";
+
+bool isFinite(const Tensor& tensor) {
+  const auto values = tensor.toFloats();
+  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+}
+
+/// Tensors of the base are named under it.
+struct BaseHolder : torch::nn::Module {
+  explicit BaseHolder(const std::shared_ptr<PoseBase>& base) { register_module("base", base); }
+};
+
+}  // namespace
+
+void checkFlow(const Config& config, const TensorFile& file, const std::string& origin) {
+  std::set<std::string> expected;
+  for (const auto& [name, shape] : flowTensors(config)) {
+    expected.insert(kStored + name);
+    if (!isFinite(file.get(kStored + name, shape, origin)))
+      throw InputError({.path = origin, .item = "tensor '" + name + "'"}, "finite weights",
+                       "NaN or infinity");
+  }
+  const bool based = config.poseBase != "none";
+  for (const auto& [key, tensor] : file.tensors)
+    if (key.starts_with(kStored) && !expected.contains(key) && !(based && key.starts_with(kBase)))
+      throw InputError({.path = origin, .item = "tensor '" + key.substr(kStored.size()) + "'"},
+                       "only tensors that the model has", "an extra one");
+}
+
+std::shared_ptr<PoseBase> loadBase(const Config& config, const BodyFacts& body,
+                                   const TensorFile& file, const std::string& origin) {
+  auto base = makePoseBase(config, body);
+  if (!base) return nullptr;
+  TensorFile own;
+  for (const auto& [key, tensor] : file.tensors)
+    if (key.starts_with(kBase)) own.tensors[key] = tensor;
+  BaseHolder holder(base);
+  loadWeights(holder, own, origin);
+  base->eval();
+  return base;
+}
+
+}  // namespace marey::moglow

@@ -195,7 +195,7 @@ void LiveScene::Internals::draw() {
     showGhosts(from);
     setClipping(from);
     for (StrokeBatch* batch : {&decals, &solid, &lines, &trails, &ghostLines, &ghosts, &sheer})
-      batch->setView({camera(), std::max(1, height)});
+      batch->setView({camera(), std::max(1, height), std::max(1, width)});
   }
   sceneChanged = timeChanged = false;
   seenFrom = eye->GetMTime();

@@ -44,7 +44,7 @@ struct LiveScene::Internals {
   // In the order of drawing.
   LiveFloor floor{renderer};
   StrokeBatch decals{renderer, StrokeLook::Flat}, solid{renderer, StrokeLook::Limbs};
-  StrokeBatch lines{renderer, StrokeLook::Flat}, trails{renderer, StrokeLook::Flat};
+  StrokeBatch lines{renderer, StrokeLook::Lines}, trails{renderer, StrokeLook::Flat};
   StrokeBatch ghostLines{renderer, StrokeLook::Flat};
   StrokeBatch ghosts{renderer, StrokeLook::Limbs, 8}, sheer{renderer, StrokeLook::Limbs, 8};
   FigureStrokes solidFigures, sheerFigures, lineFigures, ghostFigures, trailStrokes, decalStrokes;

@@ -190,4 +190,56 @@ void main()
 }
 )glsl";
 
+inline constexpr const char* lineVertexShader = R"glsl(
+//VTK::System::Dec
+in vec4 vertexMC;
+in vec4 strokeFrom;
+in vec4 strokeTo;
+in vec2 strokeInk;
+uniform mat4 MCDCMatrix;
+//VTK::CustomUniforms::Dec
+flat out vec4 ends;
+flat out vec4 ink;
+
+void main()
+{
+  float opacity = mod(strokeInk.y, 256.0);
+  ink = vec4(mod(strokeInk.x, 256.0), mod(floor(strokeInk.x / 256.0), 256.0),
+             floor(strokeInk.x / 65536.0), opacity) / 255.0;
+  vec4 a = MCDCMatrix * vec4(strokeFrom.xyz, 1.0);
+  vec4 b = MCDCMatrix * vec4(strokeTo.xyz, 1.0);
+  float nearest = 1.0e-4;
+  if (a.w < nearest && b.w > nearest) a = mix(a, b, (nearest - a.w) / (b.w - a.w));
+  if (b.w < nearest && a.w > nearest) b = mix(b, a, (nearest - b.w) / (a.w - b.w));
+  vec2 pa = (a.xy / a.w * 0.5 + 0.5) * strokeWindow.zw + strokeWindow.xy;
+  vec2 pb = (b.xy / b.w * 0.5 + 0.5) * strokeWindow.zw + strokeWindow.xy;
+  ends = vec4(pa, pb - pa);
+  ends.zw /= max(1.0e-4, dot(ends.zw, ends.zw));
+  vec4 p = vertexMC.x > 0.5 ? b : a;
+  vec2 past = (pb - pa) * inversesqrt(max(1.0e-4, dot(pb - pa, pb - pa))) * (vertexMC.x > 0.5 ? 1.3 : -1.3);
+  p.xy += past * 2.0 / strokeWindow.zw * p.w;
+  ends = vec4(pa, pb);
+  gl_Position = opacity > 0.0 ? p : vec4(2.0, 2.0, 2.0, 1.0);
+}
+)glsl";
+
+inline constexpr const char* lineFragmentShader = R"glsl(
+//VTK::System::Dec
+//VTK::Output::Dec
+flat in vec4 ends;
+flat in vec4 ink;
+
+void main()
+{
+  vec2 along = ends.zw - ends.xy;
+  vec2 place = gl_FragCoord.xy - ends.xy;
+  vec2 off = place - along * clamp(dot(place, along) / max(1.0e-4, dot(along, along)), 0.0, 1.0);
+  float cover = clamp(1.3 - length(off), 0.0, 1.0);
+  if (cover < 0.01) {
+    discard;
+  }
+  gl_FragData[0] = vec4(ink.rgb, cover * ink.a);
+}
+)glsl";
+
 }  // namespace marey::render

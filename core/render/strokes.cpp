@@ -4,6 +4,10 @@
 #include <cmath>
 
 #include <vtkActor.h>
+#include <vtkObjectFactory.h>
+#include <vtkRenderer.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
 #include <vtkCellArray.h>
 #include <vtkDataObject.h>
 #include <vtkFloatArray.h>
@@ -22,7 +26,9 @@
 namespace marey::render {
 
 namespace {
-constexpr size_t corners = 4;
+/// Wide enough for a line of 1.6 pixels and its soft edge at every slant: the width of a slanted
+/// line is measured along an axis.
+constexpr float rasterWidth = 4.0F;
 
 template <class Array>
 vtkSmartPointer<Array> namedArray(const char* name, int components) {
@@ -30,6 +36,21 @@ vtkSmartPointer<Array> namedArray(const char* name, int components) {
   array->SetName(name);
   array->SetNumberOfComponents(components);
   return array;
+}
+
+/// A line for each of the strokes [first, last).
+vtkSmartPointer<vtkCellArray> segments(size_t first, size_t last) {
+  auto indices = vtkSmartPointer<vtkTypeInt32Array>::New();
+  auto offsets = vtkSmartPointer<vtkTypeInt32Array>::New();
+  indices->SetNumberOfValues(static_cast<vtkIdType>(2 * (last - first)));
+  offsets->SetNumberOfValues(static_cast<vtkIdType>(last - first + 1));
+  for (vtkIdType i = 0; i < indices->GetNumberOfValues(); ++i)
+    indices->SetValue(i, static_cast<vtkTypeInt32>(2 * first + i));
+  for (vtkIdType i = 0; i < offsets->GetNumberOfValues(); ++i)
+    offsets->SetValue(i, static_cast<vtkTypeInt32>(2 * i));
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  cells->SetData(offsets, indices);
+  return cells;
 }
 
 /// Two triangles for each of the strokes [first, last).
@@ -40,7 +61,7 @@ vtkSmartPointer<vtkCellArray> quads(size_t first, size_t last) {
   offsets->SetNumberOfValues(static_cast<vtkIdType>(2 * (last - first) + 1));
   vtkTypeInt32* at = indices->GetPointer(0);
   for (size_t s = first; s < last; ++s) {
-    const auto v = static_cast<vtkTypeInt32>(corners * s);
+    const auto v = static_cast<vtkTypeInt32>(4 * s);
     for (const int corner : {0, 2, 1, 1, 2, 3}) *at++ = v + corner;
   }
   for (vtkIdType i = 0; i < offsets->GetNumberOfValues(); ++i)
@@ -62,6 +83,18 @@ Rgba rgbaOf(const Colour& colour) {
   return {byte(colour.r), byte(colour.g), byte(colour.b), byte(colour.a)};
 }
 
+class WideLineMapper : public vtkOpenGLPolyDataMapper {
+ public:
+  static WideLineMapper* New();
+  vtkTypeMacro(WideLineMapper, vtkOpenGLPolyDataMapper);
+  void RenderPieceDraw(vtkRenderer* r, vtkActor* a) override {
+    auto* state = static_cast<vtkOpenGLRenderWindow*>(r->GetRenderWindow())->GetState();
+    state->vtkglLineWidth(rasterWidth);
+    vtkOpenGLPolyDataMapper::RenderPieceDraw(r, a);
+    state->vtkglLineWidth(1.0F);
+  }
+};
+vtkStandardNewMacro(WideLineMapper);
 struct StrokeBatch::Internals {
   vtkSmartPointer<vtkRenderer> renderer;
   StrokeLook look = StrokeLook::Limbs;
@@ -77,6 +110,7 @@ struct StrokeBatch::Internals {
   /// points lie together, as those of a stroke do until the shader spreads them.
   vtkSmartPointer<vtkPoints> points = vtkSmartPointer<vtkPoints>::New();
 
+  size_t corners() const { return look == StrokeLook::Lines ? 2 : 4; }
   std::array<vtkFloatArray*, 3> arrays() { return {from, to, ink}; }
   std::vector<vtkSmartPointer<vtkPolyData>> parts;  ///< one per layer; all share the arrays
   std::vector<vtkSmartPointer<vtkActor>> actors;
@@ -88,7 +122,9 @@ struct StrokeBatch::Internals {
 };
 
 void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
-  auto mapper = vtkSmartPointer<vtkOpenGLPolyDataMapper>::New();
+  vtkSmartPointer<vtkOpenGLPolyDataMapper> mapper;
+  if (look == StrokeLook::Lines) mapper = vtkSmartPointer<WideLineMapper>::New();
+  else mapper = vtkSmartPointer<vtkOpenGLPolyDataMapper>::New();
   mapper->SetInputData(part);
   mapper->ScalarVisibilityOff();
   mapper->SetVBOShiftScaleMethod(vtkOpenGLVertexBufferObject::DISABLE_SHIFT_SCALE);
@@ -103,8 +139,8 @@ void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
   actor->UseBoundsOff();
   vtkShaderProperty* shaders = actor->GetShaderProperty();
   const bool limbs = look == StrokeLook::Limbs;
-  shaders->SetVertexShaderCode(limbs ? limbVertexShader : flatVertexShader);
-  shaders->SetFragmentShaderCode(limbs ? limbFragmentShader : flatFragmentShader);
+  shaders->SetVertexShaderCode(limbs ? limbVertexShader : look == StrokeLook::Lines ? lineVertexShader : flatVertexShader);
+  shaders->SetFragmentShaderCode(limbs ? limbFragmentShader : look == StrokeLook::Lines ? lineFragmentShader : flatFragmentShader);
   if (limbs) shaders->GetFragmentCustomUniforms()->SetUniformi("strokePass", pass);
   renderer->AddActor(actor);
   actors.push_back(actor);
@@ -121,10 +157,11 @@ void StrokeBatch::Internals::addPart() {
 
 void StrokeBatch::Internals::resize(size_t count) {
   capacity = std::max<size_t>(16, count + count / 2);
-  const auto tuples = static_cast<vtkIdType>(corners * capacity);
+  const auto tuples = static_cast<vtkIdType>(corners() * capacity);
   for (vtkFloatArray* array : arrays()) array->SetNumberOfTuples(tuples);
   points->SetNumberOfPoints(tuples);
   for (vtkIdType v = 0; v < tuples; ++v)
+    if (look == StrokeLook::Lines) points->SetPoint(v, static_cast<double>(v & 1), 0.0, 0.0); else
     points->SetPoint(v, static_cast<double>((v >> 1) & 1), static_cast<double>(v & 1), 0.0);
   points->Modified();
   // What lies beyond the strokes in use is never drawn, but it is uploaded.
@@ -139,7 +176,7 @@ void StrokeBatch::Internals::cut(size_t count, std::span<const uint32_t> starts)
   }
   if (next == cuts) return;
   cuts = std::move(next);
-  for (size_t g = 0; g < parts.size(); ++g) parts[g]->SetPolys(quads(cuts[g], cuts[g + 1]));
+  for (size_t g = 0; g < parts.size(); ++g) if (look==StrokeLook::Lines) parts[g]->SetLines(segments(cuts[g], cuts[g+1])); else parts[g]->SetPolys(quads(cuts[g], cuts[g + 1]));
 }
 
 StrokeBatch::StrokeBatch(vtkRenderer* renderer, StrokeLook look, int layers)
@@ -168,7 +205,7 @@ void StrokeBatch::set(std::span<const Stroke> strokes, std::span<const uint32_t>
     const Stroke& s = strokes[index];
     const auto colour = static_cast<float>(s.colour[0] + 256 * s.colour[1] + 65536 * s.colour[2]);
     const auto rest = static_cast<float>(s.colour[3] + 256 * static_cast<int>(s.kind));
-    for (size_t corner = 0; corner < corners; ++corner) {
+    for (size_t corner = 0; corner < i.corners(); ++corner) {
       from = std::copy_n(s.from.data(), 3, from);
       *from++ = s.radiusFrom;
       to = std::copy_n(s.to.data(), 3, to);
@@ -198,7 +235,12 @@ void StrokeBatch::setView(const StrokeView& view) {
     vtkUniforms* vertex = actor->GetShaderProperty()->GetVertexCustomUniforms();
     vertex->SetUniform4f("strokeEye", seen);
     vertex->SetUniformf("strokePixel", static_cast<float>(across / view.heightPixels));
-    if (m_internals->look == StrokeLook::Flat) continue;
+    if (m_internals->look == StrokeLook::Lines) {
+      const float window[4] = {0.0F, 0.0F, static_cast<float>(view.widthPixels), static_cast<float>(view.heightPixels)};
+      vertex->SetUniform4f("strokeWindow", window);
+      continue;
+    }
+    if (m_internals->look != StrokeLook::Limbs) continue;
     vertex->SetUniformf("strokeDepth", static_cast<float>(depth));
     vertex->SetUniform3f("strokeKey", floats(key).data());
     vertex->SetUniform3f("strokeFill", floats(fill).data());

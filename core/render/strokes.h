@@ -28,7 +28,7 @@ enum class StrokeKind : uint8_t {
 };
 
 /// A batch draws either limbs or all the others.
-enum class StrokeLook { Limbs, Flat };
+enum class StrokeLook { Limbs, Flat, Lines };
 
 using Rgba = std::array<uint8_t, 4>;
 Rgba rgbaOf(const Colour& colour);
@@ -43,7 +43,7 @@ struct Stroke {
 /// What the shaders need to know of the camera, with its clipping planes.
 struct StrokeView {
   Camera camera;
-  int heightPixels = 720;
+  int heightPixels = 720, widthPixels = 1280;
 };
 
 /// Strokes drawn at once. Buffers are kept and rewritten in place; they grow by halves.

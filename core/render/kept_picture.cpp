@@ -15,11 +15,15 @@ vtkOpenGLRenderWindow* windowOf(vtkRenderer* renderer) {
   return static_cast<vtkOpenGLRenderWindow*>(renderer->GetRenderWindow());
 }
 
-/// Both framebuffers have the size of the window.
-void copy(const std::array<int, 4>& viewport) {
+/// Both framebuffers have the size of the window. Where nothing is cut off, software drivers copy
+/// memory instead of drawing.
+void copy(vtkOpenGLState* state, const std::array<int, 4>& viewport) {
+  const vtkOpenGLState::ScopedglEnableDisable cut(state, GL_SCISSOR_TEST);
+  state->vtkglDisable(GL_SCISSOR_TEST);
   const auto [left, low, width, height] = viewport;
   const int extent[4] = {left, left + width, low, low + height};
-  vtkOpenGLFramebufferObject::Blit(extent, extent, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  vtkOpenGLFramebufferObject::Blit(extent, extent, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT,
+                                   GL_NEAREST);
 }
 }  // namespace
 
@@ -44,7 +48,7 @@ bool KeptPicture::restore(vtkRenderer* renderer, const PictureKey& key) {
   state->PushReadFramebufferBinding();
   m_pixels->Bind(GL_READ_FRAMEBUFFER);
   m_pixels->ActivateReadBuffer(0);
-  copy(key.viewport);
+  copy(state, key.viewport);
   state->PopReadFramebufferBinding();
   return true;
 }
@@ -53,30 +57,42 @@ void KeptPicture::keep(vtkRenderer* renderer, const PictureKey& key) {
   const bool again = m_drawn && key == m_last;
   m_last = key;
   m_drawn = true;
-  m_kept = false;
-  vtkOpenGLRenderWindow* window = windowOf(renderer);
-  if (!again || window->GetMultiSamples() > 0) return;
+  m_kept = again && take(windowOf(renderer));
+}
+
+bool KeptPicture::take(vtkOpenGLRenderWindow* window) {
+  if (m_refused || window->GetMultiSamples() > 0 || !makeRoom(window)) return false;
+  while (glGetError() != GL_NO_ERROR) continue;
   vtkOpenGLState* state = window->GetState();
-  m_pixels->SetContext(window);
-  state->PushFramebufferBindings();
-  const auto [width, height] = key.window;
-  if (m_pixels->GetFBOIndex() == 0)
-    m_kept = m_pixels->PopulateFramebuffer(width, height, true, 1, VTK_UNSIGNED_CHAR, false, 0, 0);
-  else {
-    m_pixels->Resize(width, height);
-    m_kept = true;
-  }
-  state->PopFramebufferBindings();
-  if (!m_kept) return;
   state->PushDrawFramebufferBinding();
   m_pixels->Bind(GL_DRAW_FRAMEBUFFER);
   m_pixels->ActivateDrawBuffer(0);
-  copy(key.viewport);
+  copy(state, m_last.viewport);
   state->PopDrawFramebufferBinding();
+  // Depth is only copied between equal formats, and a window may have been given another one.
+  m_refused = glGetError() != GL_NO_ERROR;
+  return !m_refused;
+}
+
+bool KeptPicture::makeRoom(vtkOpenGLRenderWindow* window) {
+  const auto [width, height] = m_last.window;
+  vtkOpenGLState* state = window->GetState();
+  state->PushFramebufferBindings();
+  m_pixels->SetContext(window);
+  bool made = true;
+  if (m_pixels->GetFBOIndex() == 0) {
+    // As VTK makes that of the window.
+    made = m_pixels->PopulateFramebuffer(width, height, true, 1, VTK_UNSIGNED_CHAR, true, 32, 0,
+                                         window->GetStencilCapable() != 0);
+  } else {
+    m_pixels->Resize(width, height);
+  }
+  state->PopFramebufferBindings();
+  return made;
 }
 
 void KeptPicture::release(vtkWindow* window) {
-  m_drawn = m_kept = false;
+  m_drawn = m_kept = m_refused = false;
   m_pixels->ReleaseGraphicsResources(window);
 }
 

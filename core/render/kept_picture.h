@@ -9,6 +9,8 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
+class vtkOpenGLRenderWindow;
+
 namespace marey::render {
 
 /// Everything on which pixels depend.
@@ -26,7 +28,7 @@ struct PictureKey {
 /// Lives in the OpenGL context of a window; used while the window draws.
 class KeptPicture {
  public:
-  /// Copies the pixels kept under this key into the view; false where there are none.
+  /// Copies colours and depths kept under this key into the view; false where there are none.
   bool restore(vtkRenderer* renderer, const PictureKey& key);
   /// Keeps what the view shows, at the second drawing under a key: while a camera moves, nothing
   /// is ever restored and keeping would cost time. Windows with multisampling are left alone.
@@ -35,10 +37,14 @@ class KeptPicture {
   void release(vtkWindow* window);
 
  private:
+  bool take(vtkOpenGLRenderWindow* window);
+  bool makeRoom(vtkOpenGLRenderWindow* window);
+
   vtkSmartPointer<vtkOpenGLFramebufferObject> m_pixels =
       vtkSmartPointer<vtkOpenGLFramebufferObject>::New();
   PictureKey m_last;
   bool m_drawn = false, m_kept = false;  ///< whether m_last was drawn, and is kept
+  bool m_refused = false;                ///< the window's pixels cannot be copied
 };
 
 }  // namespace marey::render

@@ -86,7 +86,7 @@ vtkOpenGLState* stateOf(vtkRenderer* renderer) {
   return static_cast<vtkOpenGLRenderWindow*>(renderer->GetRenderWindow())->GetState();
 }
 
-/// Draws the floor, or copies it from an earlier drawing and adds its depth alone.
+/// Draws the floor, or copies it from an earlier drawing.
 class FloorMapper : public vtkOpenGLPolyDataMapper {
  public:
   static FloorMapper* New();
@@ -97,13 +97,7 @@ class FloorMapper : public vtkOpenGLPolyDataMapper {
 
   void RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) override {
     const PictureKey key = PictureKey::of(renderer, m_look);
-    if (m_kept.restore(renderer, key)) {
-      vtkOpenGLState* state = stateOf(renderer);
-      const vtkOpenGLState::ScopedglColorMask colours(state);
-      state->vtkglColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-      Superclass::RenderPieceDraw(renderer, actor);
-      return;
-    }
+    if (m_kept.restore(renderer, key)) return;
     Superclass::RenderPieceDraw(renderer, actor);
     m_kept.keep(renderer, key);
   }

@@ -4,18 +4,18 @@
 #include <cmath>
 
 #include <vtkActor.h>
-#include <vtkObjectFactory.h>
-#include <vtkRenderer.h>
-#include <vtkOpenGLRenderWindow.h>
-#include <vtkOpenGLState.h>
 #include <vtkCellArray.h>
 #include <vtkDataObject.h>
 #include <vtkFloatArray.h>
+#include <vtkObjectFactory.h>
 #include <vtkOpenGLPolyDataMapper.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
 #include <vtkOpenGLVertexBufferObject.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkRenderer.h>
 #include <vtkShaderProperty.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
@@ -123,8 +123,10 @@ struct StrokeBatch::Internals {
 
 void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
   vtkSmartPointer<vtkOpenGLPolyDataMapper> mapper;
-  if (look == StrokeLook::Lines) mapper = vtkSmartPointer<WideLineMapper>::New();
-  else mapper = vtkSmartPointer<vtkOpenGLPolyDataMapper>::New();
+  if (look == StrokeLook::Lines)
+    mapper = vtkSmartPointer<WideLineMapper>::New();
+  else
+    mapper = vtkSmartPointer<vtkOpenGLPolyDataMapper>::New();
   mapper->SetInputData(part);
   mapper->ScalarVisibilityOff();
   mapper->SetVBOShiftScaleMethod(vtkOpenGLVertexBufferObject::DISABLE_SHIFT_SCALE);
@@ -139,8 +141,12 @@ void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
   actor->UseBoundsOff();
   vtkShaderProperty* shaders = actor->GetShaderProperty();
   const bool limbs = look == StrokeLook::Limbs;
-  shaders->SetVertexShaderCode(limbs ? limbVertexShader : look == StrokeLook::Lines ? lineVertexShader : flatVertexShader);
-  shaders->SetFragmentShaderCode(limbs ? limbFragmentShader : look == StrokeLook::Lines ? lineFragmentShader : flatFragmentShader);
+  shaders->SetVertexShaderCode(limbs                       ? limbVertexShader
+                               : look == StrokeLook::Lines ? lineVertexShader
+                                                           : flatVertexShader);
+  shaders->SetFragmentShaderCode(limbs                       ? limbFragmentShader
+                                 : look == StrokeLook::Lines ? lineFragmentShader
+                                                             : flatFragmentShader);
   if (limbs) shaders->GetFragmentCustomUniforms()->SetUniformi("strokePass", pass);
   renderer->AddActor(actor);
   actors.push_back(actor);
@@ -161,8 +167,10 @@ void StrokeBatch::Internals::resize(size_t count) {
   for (vtkFloatArray* array : arrays()) array->SetNumberOfTuples(tuples);
   points->SetNumberOfPoints(tuples);
   for (vtkIdType v = 0; v < tuples; ++v)
-    if (look == StrokeLook::Lines) points->SetPoint(v, static_cast<double>(v & 1), 0.0, 0.0); else
-    points->SetPoint(v, static_cast<double>((v >> 1) & 1), static_cast<double>(v & 1), 0.0);
+    if (look == StrokeLook::Lines)
+      points->SetPoint(v, static_cast<double>(v & 1), 0.0, 0.0);
+    else
+      points->SetPoint(v, static_cast<double>((v >> 1) & 1), static_cast<double>(v & 1), 0.0);
   points->Modified();
   // What lies beyond the strokes in use is never drawn, but it is uploaded.
   for (vtkFloatArray* array : arrays()) array->FillValue(0.0F);
@@ -176,7 +184,11 @@ void StrokeBatch::Internals::cut(size_t count, std::span<const uint32_t> starts)
   }
   if (next == cuts) return;
   cuts = std::move(next);
-  for (size_t g = 0; g < parts.size(); ++g) if (look==StrokeLook::Lines) parts[g]->SetLines(segments(cuts[g], cuts[g+1])); else parts[g]->SetPolys(quads(cuts[g], cuts[g + 1]));
+  for (size_t g = 0; g < parts.size(); ++g)
+    if (look == StrokeLook::Lines)
+      parts[g]->SetLines(segments(cuts[g], cuts[g + 1]));
+    else
+      parts[g]->SetPolys(quads(cuts[g], cuts[g + 1]));
 }
 
 StrokeBatch::StrokeBatch(vtkRenderer* renderer, StrokeLook look, int layers)
@@ -236,7 +248,8 @@ void StrokeBatch::setView(const StrokeView& view) {
     vertex->SetUniform4f("strokeEye", seen);
     vertex->SetUniformf("strokePixel", static_cast<float>(across / view.heightPixels));
     if (m_internals->look == StrokeLook::Lines) {
-      const float window[4] = {0.0F, 0.0F, static_cast<float>(view.widthPixels), static_cast<float>(view.heightPixels)};
+      const float window[4] = {0.0F, 0.0F, static_cast<float>(view.widthPixels),
+                               static_cast<float>(view.heightPixels)};
       vertex->SetUniform4f("strokeWindow", window);
       continue;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <vtkActor.h>
 #include <vtkCellArray.h>
@@ -15,20 +16,57 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkRenderer.h>
 #include <vtkShaderProperty.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkUniforms.h>
+#include <vtk_glew.h>
 
 #include "render/stroke_shaders.h"
 
 namespace marey::render {
 
 namespace {
-/// Wide enough for a line of 1.6 pixels and its soft edge at every slant: the width of a slanted
-/// line is measured along an axis.
-constexpr float rasterWidth = 4.0F;
+/// The width of a slanted line is measured along an axis of the window; this covers thin strokes
+/// and their soft edges at every slant: 2 * sqrt(2) * (thinLinePixels + 0.5).
+constexpr float rasterPixels = 4.0F;
+static_assert(rasterPixels * rasterPixels >
+              8.0F * (thinLinePixels + 0.5F) * (thinLinePixels + 0.5F));
+
+vtkOpenGLState* stateOf(vtkRenderer* renderer) {
+  return static_cast<vtkOpenGLRenderWindow*>(renderer->GetRenderWindow())->GetState();
+}
+
+/// VTK would draw wide lines by a geometry shader of its own wherever it has not asked the context
+/// for its widths, as in contexts that others made.
+class WideLineMapper : public vtkOpenGLPolyDataMapper {
+ public:
+  static WideLineMapper* New();
+  vtkTypeMacro(WideLineMapper, vtkOpenGLPolyDataMapper);
+
+  void RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) override {
+    stateOf(renderer)->vtkglLineWidth(rasterPixels);
+    Superclass::RenderPieceDraw(renderer, actor);
+    stateOf(renderer)->vtkglLineWidth(1.0F);
+  }
+};
+vtkStandardNewMacro(WideLineMapper);
+
+struct Programs {
+  const char *vertex, *fragment;
+};
+
+Programs programsOf(StrokeLook look) {
+  switch (look) {
+    case StrokeLook::Limbs:
+      return {limbVertexShader, limbFragmentShader};
+    case StrokeLook::Flat:
+      return {flatVertexShader, flatFragmentShader};
+    case StrokeLook::Thin:
+      break;
+  }
+  return {thinVertexShader, thinFragmentShader};
+}
 
 template <class Array>
 vtkSmartPointer<Array> namedArray(const char* name, int components) {
@@ -38,37 +76,36 @@ vtkSmartPointer<Array> namedArray(const char* name, int components) {
   return array;
 }
 
-/// A line for each of the strokes [first, last).
-vtkSmartPointer<vtkCellArray> segments(size_t first, size_t last) {
-  auto indices = vtkSmartPointer<vtkTypeInt32Array>::New();
+/// Cells of `corners` points each.
+vtkSmartPointer<vtkCellArray> cellsOf(vtkTypeInt32Array* indices, vtkIdType corners) {
   auto offsets = vtkSmartPointer<vtkTypeInt32Array>::New();
-  indices->SetNumberOfValues(static_cast<vtkIdType>(2 * (last - first)));
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(last - first + 1));
-  for (vtkIdType i = 0; i < indices->GetNumberOfValues(); ++i)
-    indices->SetValue(i, static_cast<vtkTypeInt32>(2 * first + i));
+  offsets->SetNumberOfValues(indices->GetNumberOfValues() / corners + 1);
   for (vtkIdType i = 0; i < offsets->GetNumberOfValues(); ++i)
-    offsets->SetValue(i, static_cast<vtkTypeInt32>(2 * i));
+    offsets->SetValue(i, static_cast<vtkTypeInt32>(corners * i));
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, indices);
   return cells;
 }
 
+/// A line for each of the strokes [first, last).
+vtkSmartPointer<vtkCellArray> segments(size_t first, size_t last) {
+  auto indices = vtkSmartPointer<vtkTypeInt32Array>::New();
+  indices->SetNumberOfValues(static_cast<vtkIdType>(2 * (last - first)));
+  std::iota(indices->GetPointer(0), indices->GetPointer(0) + indices->GetNumberOfValues(),
+            static_cast<vtkTypeInt32>(2 * first));
+  return cellsOf(indices, 2);
+}
+
 /// Two triangles for each of the strokes [first, last).
 vtkSmartPointer<vtkCellArray> quads(size_t first, size_t last) {
   auto indices = vtkSmartPointer<vtkTypeInt32Array>::New();
-  auto offsets = vtkSmartPointer<vtkTypeInt32Array>::New();
   indices->SetNumberOfValues(static_cast<vtkIdType>(6 * (last - first)));
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(2 * (last - first) + 1));
   vtkTypeInt32* at = indices->GetPointer(0);
   for (size_t s = first; s < last; ++s) {
     const auto v = static_cast<vtkTypeInt32>(4 * s);
     for (const int corner : {0, 2, 1, 1, 2, 3}) *at++ = v + corner;
   }
-  for (vtkIdType i = 0; i < offsets->GetNumberOfValues(); ++i)
-    offsets->SetValue(i, static_cast<vtkTypeInt32>(3 * i));
-  auto cells = vtkSmartPointer<vtkCellArray>::New();
-  cells->SetData(offsets, indices);
-  return cells;
+  return cellsOf(indices, 3);
 }
 
 std::array<float, 3> floats(const Vec3& v) {
@@ -83,18 +120,16 @@ Rgba rgbaOf(const Colour& colour) {
   return {byte(colour.r), byte(colour.g), byte(colour.b), byte(colour.a)};
 }
 
-class WideLineMapper : public vtkOpenGLPolyDataMapper {
- public:
-  static WideLineMapper* New();
-  vtkTypeMacro(WideLineMapper, vtkOpenGLPolyDataMapper);
-  void RenderPieceDraw(vtkRenderer* r, vtkActor* a) override {
-    auto* state = static_cast<vtkOpenGLRenderWindow*>(r->GetRenderWindow())->GetState();
-    state->vtkglLineWidth(rasterWidth);
-    vtkOpenGLPolyDataMapper::RenderPieceDraw(r, a);
-    state->vtkglLineWidth(1.0F);
-  }
-};
-vtkStandardNewMacro(WideLineMapper);
+bool drawsThinStrokes(vtkRenderer* renderer) {
+  vtkOpenGLState* state = stateOf(renderer);
+  float widths[2] = {0.0F, 0.0F};
+  state->vtkglGetFloatv(GL_ALIASED_LINE_WIDTH_RANGE, widths);
+  int flags = 0;
+  state->vtkglGetIntegerv(GL_CONTEXT_FLAGS, &flags);
+  // Contexts without what is deprecated refuse wide lines, whatever the range.
+  return widths[1] >= rasterPixels && (flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT) == 0;
+}
+
 struct StrokeBatch::Internals {
   vtkSmartPointer<vtkRenderer> renderer;
   StrokeLook look = StrokeLook::Limbs;
@@ -110,7 +145,8 @@ struct StrokeBatch::Internals {
   /// points lie together, as those of a stroke do until the shader spreads them.
   vtkSmartPointer<vtkPoints> points = vtkSmartPointer<vtkPoints>::New();
 
-  size_t corners() const { return look == StrokeLook::Lines ? 2 : 4; }
+  bool thin() const { return look == StrokeLook::Thin; }
+  size_t corners() const { return thin() ? 2 : 4; }
   std::array<vtkFloatArray*, 3> arrays() { return {from, to, ink}; }
   std::vector<vtkSmartPointer<vtkPolyData>> parts;  ///< one per layer; all share the arrays
   std::vector<vtkSmartPointer<vtkActor>> actors;
@@ -123,7 +159,7 @@ struct StrokeBatch::Internals {
 
 void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
   vtkSmartPointer<vtkOpenGLPolyDataMapper> mapper;
-  if (look == StrokeLook::Lines)
+  if (thin())
     mapper = vtkSmartPointer<WideLineMapper>::New();
   else
     mapper = vtkSmartPointer<vtkOpenGLPolyDataMapper>::New();
@@ -140,14 +176,10 @@ void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
   actor->PickableOff();
   actor->UseBoundsOff();
   vtkShaderProperty* shaders = actor->GetShaderProperty();
-  const bool limbs = look == StrokeLook::Limbs;
-  shaders->SetVertexShaderCode(limbs                       ? limbVertexShader
-                               : look == StrokeLook::Lines ? lineVertexShader
-                                                           : flatVertexShader);
-  shaders->SetFragmentShaderCode(limbs                       ? limbFragmentShader
-                                 : look == StrokeLook::Lines ? lineFragmentShader
-                                                             : flatFragmentShader);
-  if (limbs) shaders->GetFragmentCustomUniforms()->SetUniformi("strokePass", pass);
+  shaders->SetVertexShaderCode(programsOf(look).vertex);
+  shaders->SetFragmentShaderCode(programsOf(look).fragment);
+  if (look == StrokeLook::Limbs)
+    shaders->GetFragmentCustomUniforms()->SetUniformi("strokePass", pass);
   renderer->AddActor(actor);
   actors.push_back(actor);
 }
@@ -166,11 +198,10 @@ void StrokeBatch::Internals::resize(size_t count) {
   const auto tuples = static_cast<vtkIdType>(corners() * capacity);
   for (vtkFloatArray* array : arrays()) array->SetNumberOfTuples(tuples);
   points->SetNumberOfPoints(tuples);
-  for (vtkIdType v = 0; v < tuples; ++v)
-    if (look == StrokeLook::Lines)
-      points->SetPoint(v, static_cast<double>(v & 1), 0.0, 0.0);
-    else
-      points->SetPoint(v, static_cast<double>((v >> 1) & 1), static_cast<double>(v & 1), 0.0);
+  for (vtkIdType v = 0; v < tuples; ++v) {
+    const vtkIdType end = thin() ? v & 1 : (v >> 1) & 1, side = thin() ? 0 : v & 1;
+    points->SetPoint(v, static_cast<double>(end), static_cast<double>(side), 0.0);
+  }
   points->Modified();
   // What lies beyond the strokes in use is never drawn, but it is uploaded.
   for (vtkFloatArray* array : arrays()) array->FillValue(0.0F);
@@ -184,11 +215,12 @@ void StrokeBatch::Internals::cut(size_t count, std::span<const uint32_t> starts)
   }
   if (next == cuts) return;
   cuts = std::move(next);
-  for (size_t g = 0; g < parts.size(); ++g)
-    if (look == StrokeLook::Lines)
+  for (size_t g = 0; g < parts.size(); ++g) {
+    if (thin())
       parts[g]->SetLines(segments(cuts[g], cuts[g + 1]));
     else
       parts[g]->SetPolys(quads(cuts[g], cuts[g + 1]));
+  }
 }
 
 StrokeBatch::StrokeBatch(vtkRenderer* renderer, StrokeLook look, int layers)
@@ -246,12 +278,12 @@ void StrokeBatch::setView(const StrokeView& view) {
   for (const auto& actor : m_internals->actors) {
     vtkUniforms* vertex = actor->GetShaderProperty()->GetVertexCustomUniforms();
     vertex->SetUniform4f("strokeEye", seen);
-    vertex->SetUniformf("strokePixel", static_cast<float>(across / view.heightPixels));
-    if (m_internals->look == StrokeLook::Lines) {
-      const float window[4] = {0.0F, 0.0F, static_cast<float>(view.widthPixels),
-                               static_cast<float>(view.heightPixels)};
+    vertex->SetUniformf("strokePixel", static_cast<float>(across / view.viewport[3]));
+    if (m_internals->thin()) {
+      const auto [left, low, width, height] = view.viewport;
+      const float window[4] = {static_cast<float>(left), static_cast<float>(low),
+                               static_cast<float>(width), static_cast<float>(height)};
       vertex->SetUniform4f("strokeWindow", window);
-      continue;
     }
     if (m_internals->look != StrokeLook::Limbs) continue;
     vertex->SetUniformf("strokeDepth", static_cast<float>(depth));

@@ -16,6 +16,7 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkProperty.h>
 #include <vtkShaderProperty.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
@@ -44,11 +45,8 @@ class WideLineMapper : public vtkOpenGLPolyDataMapper {
   static WideLineMapper* New();
   vtkTypeMacro(WideLineMapper, vtkOpenGLPolyDataMapper);
 
-  void RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) override {
-    stateOf(renderer)->vtkglLineWidth(rasterPixels);
-    Superclass::RenderPieceDraw(renderer, actor);
-    stateOf(renderer)->vtkglLineWidth(1.0F);
-  }
+ protected:
+  bool HaveWideLines(vtkRenderer*, vtkActor*) override { return false; }
 };
 vtkStandardNewMacro(WideLineMapper);
 
@@ -180,6 +178,7 @@ void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
   shaders->SetFragmentShaderCode(programsOf(look).fragment);
   if (look == StrokeLook::Limbs)
     shaders->GetFragmentCustomUniforms()->SetUniformi("strokePass", pass);
+  if (thin()) actor->GetProperty()->SetLineWidth(rasterPixels);
   renderer->AddActor(actor);
   actors.push_back(actor);
 }

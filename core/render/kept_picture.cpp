@@ -42,15 +42,13 @@ PictureKey PictureKey::of(vtkRenderer* renderer, uint64_t look) {
   return key;
 }
 
-bool KeptPicture::restore(vtkRenderer* renderer, const PictureKey& key) {
-  if (!m_kept || key != m_last) return false;
+void KeptPicture::restore(vtkRenderer* renderer) const {
   vtkOpenGLState* state = windowOf(renderer)->GetState();
   state->PushReadFramebufferBinding();
   m_pixels->Bind(GL_READ_FRAMEBUFFER);
   m_pixels->ActivateReadBuffer(0);
-  copy(state, key.viewport);
+  copy(state, m_last.viewport);
   state->PopReadFramebufferBinding();
-  return true;
 }
 
 void KeptPicture::keep(vtkRenderer* renderer, const PictureKey& key) {

@@ -28,8 +28,9 @@ struct PictureKey {
 /// Lives in the OpenGL context of a window; used while the window draws.
 class KeptPicture {
  public:
-  /// Copies colours and depths kept under this key into the view; false where there are none.
-  bool restore(vtkRenderer* renderer, const PictureKey& key);
+  bool holds(const PictureKey& key) const { return m_kept && key == m_last; }
+  /// Copies the colours and depths that are held into the view.
+  void restore(vtkRenderer* renderer) const;
   /// Keeps what the view shows, at the second drawing under a key: while a camera moves, nothing
   /// is ever restored and keeping would cost time. Windows with multisampling are left alone.
   void keep(vtkRenderer* renderer, const PictureKey& key);

@@ -95,11 +95,19 @@ class FloorMapper : public vtkOpenGLPolyDataMapper {
   /// To be called whenever what is drawn changes.
   void changeLook() { ++m_look; }
 
+  /// To be called before each drawing; true where it will copy.
+  bool prepare(vtkRenderer* renderer) {
+    m_key = PictureKey::of(renderer, m_look);
+    return m_kept.holds(m_key);
+  }
+
   void RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) override {
-    const PictureKey key = PictureKey::of(renderer, m_look);
-    if (m_kept.restore(renderer, key)) return;
+    if (m_kept.holds(m_key)) {
+      m_kept.restore(renderer);
+      return;
+    }
     Superclass::RenderPieceDraw(renderer, actor);
-    m_kept.keep(renderer, key);
+    m_kept.keep(renderer, m_key);
   }
 
   void ReleaseGraphicsResources(vtkWindow* window) override {
@@ -109,6 +117,7 @@ class FloorMapper : public vtkOpenGLPolyDataMapper {
 
  private:
   KeptPicture m_kept;
+  PictureKey m_key;  ///< of the present drawing
   uint64_t m_look = 0;
 };
 vtkStandardNewMacro(FloorMapper);
@@ -245,6 +254,13 @@ LiveFloor::~LiveFloor() = default;
 void LiveFloor::setVisible(bool visible) {
   m_internals->visible = visible;
   m_internals->show();
+}
+
+void LiveFloor::prepare(vtkRenderer* renderer) {
+  // What is copied over the whole view need not be cleared before.
+  const bool copied = m_internals->visible && m_internals->mapper->prepare(renderer);
+  renderer->SetPreserveColorBuffer(copied ? 1 : 0);
+  renderer->SetPreserveDepthBuffer(copied ? 1 : 0);
 }
 
 void LiveFloor::setPlace(double x, double z, double radiusM) {

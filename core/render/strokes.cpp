@@ -30,7 +30,7 @@ namespace marey::render {
 namespace {
 /// The width of a slanted line is measured along an axis of the window; this covers thin strokes
 /// and their soft edges at every slant: 2 * sqrt(2) * (thinLinePixels + 0.5).
-constexpr float rasterPixels = 4.0F;
+constexpr float rasterPixels = 3.7F;
 static_assert(rasterPixels * rasterPixels >
               8.0F * (thinLinePixels + 0.5F) * (thinLinePixels + 0.5F));
 

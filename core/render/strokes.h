@@ -34,7 +34,7 @@ enum class StrokeLook {
   Thin,  ///< Lines of at most thinLinePixels, for crowds: half the corners and fewer pixels
 };
 /// The largest radius of a thin line.
-inline constexpr float thinLinePixels = 0.9F;
+inline constexpr float thinLinePixels = 0.8F;
 /// Whether the window of a renderer can draw thin strokes; if not, they are drawn as Flat ones.
 /// Only while it draws.
 bool drawsThinStrokes(vtkRenderer* renderer);

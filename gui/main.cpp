@@ -1,14 +1,13 @@
 // marey-workbench: the window.
 #include <QCommandLineParser>
-#include <QSurfaceFormat>
 #include <QTimer>
 #include <cstdio>
 
 #include "panels/commands.h"
 #include "panels/panels.h"
+#include "panels/scene_view.h"
 #include "shell/application.h"
 #include "shell/main_window.h"
-#include <QVTKOpenGLNativeWidget.h>
 
 #include "nn/threads.h"
 
@@ -41,9 +40,7 @@ void answerQuestions(int argc, char** argv) {
 }
 
 int run(int argc, char** argv) {
-  QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
-  format.setSamples(0);
-  QSurfaceFormat::setDefaultFormat(format);
+  SceneView::setDefaultFormat();
   Application application(argc, argv);
   QCommandLineParser parser;
   describe(parser);

@@ -43,18 +43,21 @@ Colour LiveScene::Internals::shownColour(size_t motion, double timeS) const {
   return withOpacity(mix(colour, backdropOf(options.dark).floor, 0.62), kept);
 }
 
+/// A ball on the joint. Lines, whose own batch draws one width, have a wide dot over them.
 void LiveScene::Internals::addHighlightBall(FigureStrokes& figures, size_t motion) {
   const auto pose = poseOf(motion);
   const auto& joint = motions[motion].highlightJoint;
   if (!joint || *joint < 0 || *joint >= static_cast<int>(pose.size())) return;
+  constexpr Rgba amber = {255, 193, 7, 255};
   const Vec3& at = pose[static_cast<size_t>(*joint)];
   const float radius = 2.0F * tracks[motion]->shape().capsules.front().radiusTo;
-  const bool thin = &figures == &lineFigures;
-  const float size = thin ? 3.0F : radius;
-  figures.addToLast(
-      {at, at, size, size, {255, 193, 7, 255}, thin ? StrokeKind::Line : StrokeKind::Limb});
+  if (&figures == &lineFigures)
+    trailStrokes.addToLast({at, at, 3.0F, 3.0F, amber, StrokeKind::Line});
+  else
+    figures.addToLast({at, at, radius, radius, amber, StrokeKind::Limb});
 }
 
+/// After the trails, to which the dots of lines are added.
 void LiveScene::Internals::fillFigures() {
   solidFigures.clear();
   sheerFigures.clear();
@@ -155,16 +158,20 @@ void LiveScene::Internals::fillShadows() {
 
 void LiveScene::Internals::showStrokes(const Camera& from) {
   solid.set(solidFigures.strokes(), solidFigures.byStroke(from));
-  lines.set(lineFigures.strokes(), lineFigures.byFigure(from));
+  const auto farFirst = lineFigures.byFigure(from);
+  (thinStrokes ? lines : plainLines).set(lineFigures.strokes(), farFirst);
+  (thinStrokes ? plainLines : lines).set({}, {});
   const auto inOrder = sheerFigures.byFigure(from);
   sheer.set(sheerFigures.strokes(), inOrder, sheerFigures.starts());
 }
 
 void LiveScene::Internals::showGhosts(const Camera& from) {
   const auto inOrder = ghostFigures.byFigure(from);
-  StrokeBatch &used = useLines() ? ghostLines : ghosts, &unused = useLines() ? ghosts : ghostLines;
+  StrokeBatch& asLines = thinStrokes ? ghostLines : plainGhostLines;
+  StrokeBatch& used = useLines() ? asLines : ghosts;
   used.set(ghostFigures.strokes(), inOrder, ghostFigures.starts());
-  unused.set({}, {});
+  for (StrokeBatch* batch : {&ghostLines, &plainGhostLines, &ghosts})
+    if (batch != &used) batch->set({}, {});
 }
 
 void LiveScene::Internals::setClipping(const Camera& from) {
@@ -175,15 +182,27 @@ void LiveScene::Internals::setClipping(const Camera& from) {
                         std::max(1.0F, depth + reach));
 }
 
+void LiveScene::Internals::setViews() {
+  for (StrokeBatch* batch : {&decals, &solid, &lines, &plainLines, &trails, &ghostLines,
+                             &plainGhostLines, &ghosts, &sheer})
+    batch->setView({camera(), seenIn});
+}
+
 void LiveScene::Internals::draw() {
   const auto begin = std::chrono::steady_clock::now();
-  int width = 0, height = 0, left = 0, low = 0;
+  std::array<int, 4> viewport{};
+  auto& [left, low, width, height] = viewport;
   renderer->GetTiledSizeAndOrigin(&width, &height, &left, &low);
+  width = std::max(1, width);
+  height = std::max(1, height);
   const Camera from = camera();
-  const bool moved = eye->GetMTime() != seenFrom || height != seenHeight;
+  const bool thin = drawsThinStrokes(renderer);
+  const bool moved = eye->GetMTime() != seenFrom || viewport != seenIn || thin != thinStrokes;
+  seenIn = viewport;
+  thinStrokes = thin;
   if (sceneChanged || timeChanged) {
-    fillFigures();
     fillTrails();
+    fillFigures();
     fillDecals();
     fillShadows();
     trails.set(trailStrokes.strokes(), trailStrokes.asAdded());
@@ -194,12 +213,11 @@ void LiveScene::Internals::draw() {
   if (sceneChanged || moved) {
     showGhosts(from);
     setClipping(from);
-    for (StrokeBatch* batch : {&decals, &solid, &lines, &trails, &ghostLines, &ghosts, &sheer})
-      batch->setView({camera(), std::max(1, height)});
+    setViews();
   }
+  floor.prepare(renderer);
   sceneChanged = timeChanged = false;
   seenFrom = eye->GetMTime();
-  seenHeight = height;
   cost.figures = cost.strokes = 0;
   for (const FigureStrokes* some :
        {&solidFigures, &sheerFigures, &lineFigures, &ghostFigures, &trailStrokes, &decalStrokes}) {

@@ -6,8 +6,6 @@
 namespace marey::render {
 
 namespace {
-constexpr float linePixels = 0.8F;  ///< half the width of a line
-
 /// Sorts like the number, read as an unsigned integer, far before near.
 uint32_t farFirst(float depth) {
   const auto bits = std::bit_cast<uint32_t>(depth);
@@ -34,7 +32,7 @@ void FigureStrokes::add(const BodyShape& shape, std::span<const Vec3> pose, cons
     const Vec3 &from = pose[static_cast<size_t>(c.from)], &to = pose[static_cast<size_t>(c.to)];
     const Rgba& ink = c.leftSide ? left : plain;
     if (lines) {
-      m_strokes.push_back({from, to, linePixels, linePixels, ink, StrokeKind::Line});
+      m_strokes.push_back({from, to, thinLinePixels, thinLinePixels, ink, StrokeKind::Line});
     } else {
       m_strokes.push_back({from, to, c.radiusFrom, c.radiusTo, ink, StrokeKind::Limb});
     }

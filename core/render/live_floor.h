@@ -30,6 +30,9 @@ class LiveFloor {
   void setPlace(double x, double z, double radiusM);
   void setLook(const Backdrop& backdrop, double gridM);
   void setShadows(const ShadowMap& map);
+  /// At the start of every drawing, when the camera is as it will be drawn. While neither it nor
+  /// the floor changes, the floor is copied from an earlier drawing.
+  void prepare(vtkRenderer* renderer);
 
  private:
   struct Internals;

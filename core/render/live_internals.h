@@ -2,6 +2,7 @@
 // user sets), live_drawing.cpp (what is done before a drawing) and live_camera.cpp.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -44,8 +45,9 @@ struct LiveScene::Internals {
   // In the order of drawing.
   LiveFloor floor{renderer};
   StrokeBatch decals{renderer, StrokeLook::Flat}, solid{renderer, StrokeLook::Limbs};
-  StrokeBatch lines{renderer, StrokeLook::Flat}, trails{renderer, StrokeLook::Flat};
-  StrokeBatch ghostLines{renderer, StrokeLook::Flat};
+  StrokeBatch lines{renderer, StrokeLook::Thin}, plainLines{renderer, StrokeLook::Flat};
+  StrokeBatch trails{renderer, StrokeLook::Flat};
+  StrokeBatch ghostLines{renderer, StrokeLook::Thin}, plainGhostLines{renderer, StrokeLook::Flat};
   StrokeBatch ghosts{renderer, StrokeLook::Limbs, 8}, sheer{renderer, StrokeLook::Limbs, 8};
   FigureStrokes solidFigures, sheerFigures, lineFigures, ghostFigures, trailStrokes, decalStrokes;
   std::vector<ShadowLimb> shadowLimbs;
@@ -54,8 +56,9 @@ struct LiveScene::Internals {
   bool sceneChanged = true, timeChanged = true;  ///< since the last drawing
   bool posesCurrent = false;
   bool someHighlighted = false;
-  vtkMTimeType seenFrom = 0;  ///< the camera of the last drawing
-  int seenHeight = 0;
+  vtkMTimeType seenFrom = 0;    ///< the camera of the last drawing
+  std::array<int, 4> seenIn{};  ///< its viewport; see StrokeView
+  bool thinStrokes = true;      ///< what its window draws; without, lines are plain ones
   SceneExtent extent;
   std::vector<Vec3> poses;      ///< of every motion at `time`, one after the other
   std::vector<size_t> offsets;  ///< first joint of each motion
@@ -83,6 +86,7 @@ struct LiveScene::Internals {
   void fillShadows();
   void showStrokes(const Camera& from);
   void showGhosts(const Camera& from);
+  void setViews();
   void setClipping(const Camera& from);
 
  private:

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 namespace marey::render {
 
 namespace {
-constexpr float finest = 40.0F;       ///< texels per metre
-constexpr int largest = 512;          ///< texels along an edge
-constexpr double mostWork = 2.0e5;    ///< texels touched in one map
-constexpr float contactSoft = 0.02F;  ///< half the width of the soft rim at the floor, metres
-constexpr float softPerM = 0.11F;     ///< and its growth with height
+constexpr float finest = 40.0F;         ///< texels per metre
+constexpr int largest = 512;            ///< texels along an edge
+constexpr double mostWork = 2.0e5;      ///< texels touched in one map
+constexpr double worthThreads = 5.0e4;  ///< texels; fewer are done before a thread has started
+constexpr float contactSoft = 0.02F;    ///< half the width of the soft rim at the floor, metres
+constexpr float softPerM = 0.11F;       ///< and its growth with height
 
 /// A limb seen by the light, metres on the floor.
 struct Smear {
@@ -46,16 +48,21 @@ FloorArea areaOf(const std::vector<Smear>& smears) {
   return area;
 }
 
-/// Darkest wins: overlapping limbs of one figure do not add up to a black spot.
-void draw(const Smear& s, float perMetre, ShadowMap& map) {
+struct Rows {
+  int first = 0, last = 0;  ///< both included
+};
+
+/// Darkest wins: overlapping limbs of one figure do not add up to a black spot, and it does not
+/// matter in which order they are drawn.
+void draw(const Smear& s, float perMetre, const Rows& rows, ShadowMap& map) {
   const Eigen::Vector2f origin(static_cast<float>(map.area.x0), static_cast<float>(map.area.z0));
   const Eigen::Vector2f a = (s.from - origin) * perMetre, b = (s.to - origin) * perMetre;
   const float outer = s.outer * perMetre;
   const Eigen::Vector2f low = a.cwiseMin(b).array() - outer, high = a.cwiseMax(b).array() + outer;
   const int x0 = std::max(1, static_cast<int>(low.x())),
-            y0 = std::max(1, static_cast<int>(low.y()));
+            y0 = std::max(rows.first, static_cast<int>(low.y()));
   const int x1 = std::min(map.width - 2, static_cast<int>(high.x()));
-  const int y1 = std::min(map.height - 2, static_cast<int>(high.y()));
+  const int y1 = std::min(rows.last, static_cast<int>(high.y()));
   const Eigen::Vector2f axis = b - a;
   const float invLength2 = 1.0F / std::max(1e-6F, axis.squaredNorm());
   const float invOuter2 = 1.0F / (outer * outer), depth = 255.0F * s.depth;
@@ -71,6 +78,19 @@ void draw(const Smear& s, float perMetre, ShadowMap& map) {
       row[x] = std::min(row[x], left);
     }
   }
+}
+
+/// Each thread has rows of its own, so that the map is the same for any number of them.
+void drawAll(std::span<const Smear> smears, float perMetre, bool large, ShadowMap& map) {
+  const unsigned threads = large ? std::clamp(std::thread::hardware_concurrency(), 1U, 8U) : 1U;
+  const int rows = map.height - 2;
+  const auto drawBand = [&](unsigned band) {
+    const auto edge = [&](unsigned b) { return 1 + static_cast<int>(b * rows / threads); };
+    for (const Smear& s : smears) draw(s, perMetre, {edge(band), edge(band + 1) - 1}, map);
+  };
+  std::vector<std::jthread> others;
+  for (unsigned band = 1; band < threads; ++band) others.emplace_back(drawBand, band);
+  drawBand(0);
 }
 }  // namespace
 
@@ -96,7 +116,7 @@ void castSoftShadows(std::span<const ShadowLimb> limbs, const Eigen::Vector2f& s
   map.area.x1 = map.area.x0 + map.width / perMetre;
   map.area.z1 = map.area.z0 + map.height / perMetre;
   map.light.assign(static_cast<size_t>(map.width) * map.height, 255);
-  for (const Smear& s : smears) draw(s, static_cast<float>(perMetre), map);
+  drawAll(smears, static_cast<float>(perMetre), work > worthThreads, map);
 }
 
 }  // namespace marey::render

@@ -1,6 +1,6 @@
 // Private to the folder: the programs that draw strokes; see strokes.h. Without a graphics card
 // they run on the processor, once for every corner and pixel of every stroke: what is the same for
-// a whole stroke is worked out per corner, and limbs and flat strokes have a program each.
+// a whole stroke is worked out per corner, and limbs, flat and thin strokes have a program each.
 #pragma once
 
 namespace marey::render {
@@ -187,6 +187,70 @@ void main()
     discard;
   }
   gl_FragData[0] = vec4(ink.rgb, cover * ink.a);
+}
+)glsl";
+
+// vertexMC.x says which end this is; strokeWindow is the viewport in the window: left, low, width,
+// height in pixels. What is before the near plane is cut here, as it has no place in the window.
+inline constexpr const char* thinVertexShader = R"glsl(
+//VTK::System::Dec
+in vec4 vertexMC;
+in vec4 strokeFrom;
+in vec4 strokeTo;
+in vec2 strokeInk;
+uniform mat4 MCDCMatrix;
+//VTK::CustomUniforms::Dec
+flat out vec4 line;
+flat out vec2 form;
+flat out vec4 ink;
+
+void main()
+{
+  float opacity = mod(strokeInk.y, 256.0);
+  ink = vec4(mod(strokeInk.x, 256.0), mod(floor(strokeInk.x / 256.0), 256.0),
+             floor(strokeInk.x / 65536.0), opacity) / 255.0;
+  vec4 a = MCDCMatrix * vec4(strokeFrom.xyz, 1.0);
+  vec4 b = MCDCMatrix * vec4(strokeTo.xyz, 1.0);
+  float seenA = a.z + a.w;
+  float seenB = b.z + b.w;
+  if (opacity <= 0.0 || max(seenA, seenB) <= 0.0) {
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    return;
+  }
+  if (seenA < 0.0) {
+    a = mix(a, b, seenA / (seenA - seenB));
+  }
+  if (seenB < 0.0) {
+    b = mix(b, a, seenB / (seenB - seenA));
+  }
+  vec2 from = (a.xy / a.w * 0.5 + 0.5) * strokeWindow.zw + strokeWindow.xy;
+  vec2 along = (b.xy / b.w * 0.5 + 0.5) * strokeWindow.zw + strokeWindow.xy - from;
+  float reach = length(along);
+  along = reach > 1.0e-3 ? along / reach : vec2(1.0, 0.0);
+  line = vec4(from, along);
+  form = vec2(reach, strokeFrom.w + 0.5);
+  // The ends of wide lines are cut along an axis of the window.
+  vec2 past = along * form.y / max(abs(along.x), abs(along.y)) * (vertexMC.x * 2.0 - 1.0);
+  gl_Position = vertexMC.x > 0.5 ? b : a;
+  gl_Position.xy += past * 2.0 / strokeWindow.zw * gl_Position.w;
+}
+)glsl";
+
+inline constexpr const char* thinFragmentShader = R"glsl(
+//VTK::System::Dec
+//VTK::Output::Dec
+flat in vec4 line;
+flat in vec2 form;
+flat in vec4 ink;
+
+void main()
+{
+  vec2 place = gl_FragCoord.xy - line.xy;
+  float cover = form.y - length(place - line.zw * clamp(dot(place, line.zw), 0.0, form.x));
+  if (cover < 0.01) {
+    discard;
+  }
+  gl_FragData[0] = vec4(ink.rgb, min(cover, 1.0) * ink.a);
 }
 )glsl";
 

@@ -2,27 +2,69 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <vtkActor.h>
 #include <vtkCellArray.h>
 #include <vtkDataObject.h>
 #include <vtkFloatArray.h>
+#include <vtkObjectFactory.h>
 #include <vtkOpenGLPolyDataMapper.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
 #include <vtkOpenGLVertexBufferObject.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkProperty.h>
 #include <vtkShaderProperty.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkUniforms.h>
+#include <vtk_glew.h>
 
 #include "render/stroke_shaders.h"
 
 namespace marey::render {
 
 namespace {
-constexpr size_t corners = 4;
+/// The width of a slanted line is measured along an axis of the window; this covers thin strokes
+/// and their soft edges at every slant: 2 * sqrt(2) * (thinLinePixels + 0.5).
+constexpr float rasterPixels = 3.7F;
+static_assert(rasterPixels * rasterPixels >
+              8.0F * (thinLinePixels + 0.5F) * (thinLinePixels + 0.5F));
+
+vtkOpenGLState* stateOf(vtkRenderer* renderer) {
+  return static_cast<vtkOpenGLRenderWindow*>(renderer->GetRenderWindow())->GetState();
+}
+
+/// VTK would draw wide lines by a geometry shader of its own wherever it has not asked the context
+/// for its widths, as in contexts that others made.
+class WideLineMapper : public vtkOpenGLPolyDataMapper {
+ public:
+  static WideLineMapper* New();
+  vtkTypeMacro(WideLineMapper, vtkOpenGLPolyDataMapper);
+
+ protected:
+  bool HaveWideLines(vtkRenderer*, vtkActor*) override { return false; }
+};
+vtkStandardNewMacro(WideLineMapper);
+
+struct Programs {
+  const char *vertex, *fragment;
+};
+
+Programs programsOf(StrokeLook look) {
+  switch (look) {
+    case StrokeLook::Limbs:
+      return {limbVertexShader, limbFragmentShader};
+    case StrokeLook::Flat:
+      return {flatVertexShader, flatFragmentShader};
+    case StrokeLook::Thin:
+      break;
+  }
+  return {thinVertexShader, thinFragmentShader};
+}
 
 template <class Array>
 vtkSmartPointer<Array> namedArray(const char* name, int components) {
@@ -32,22 +74,36 @@ vtkSmartPointer<Array> namedArray(const char* name, int components) {
   return array;
 }
 
-/// Two triangles for each of the strokes [first, last).
-vtkSmartPointer<vtkCellArray> quads(size_t first, size_t last) {
-  auto indices = vtkSmartPointer<vtkTypeInt32Array>::New();
+/// Cells of `corners` points each.
+vtkSmartPointer<vtkCellArray> cellsOf(vtkTypeInt32Array* indices, vtkIdType corners) {
   auto offsets = vtkSmartPointer<vtkTypeInt32Array>::New();
-  indices->SetNumberOfValues(static_cast<vtkIdType>(6 * (last - first)));
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(2 * (last - first) + 1));
-  vtkTypeInt32* at = indices->GetPointer(0);
-  for (size_t s = first; s < last; ++s) {
-    const auto v = static_cast<vtkTypeInt32>(corners * s);
-    for (const int corner : {0, 2, 1, 1, 2, 3}) *at++ = v + corner;
-  }
+  offsets->SetNumberOfValues(indices->GetNumberOfValues() / corners + 1);
   for (vtkIdType i = 0; i < offsets->GetNumberOfValues(); ++i)
-    offsets->SetValue(i, static_cast<vtkTypeInt32>(3 * i));
+    offsets->SetValue(i, static_cast<vtkTypeInt32>(corners * i));
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, indices);
   return cells;
+}
+
+/// A line for each of the strokes [first, last).
+vtkSmartPointer<vtkCellArray> segments(size_t first, size_t last) {
+  auto indices = vtkSmartPointer<vtkTypeInt32Array>::New();
+  indices->SetNumberOfValues(static_cast<vtkIdType>(2 * (last - first)));
+  std::iota(indices->GetPointer(0), indices->GetPointer(0) + indices->GetNumberOfValues(),
+            static_cast<vtkTypeInt32>(2 * first));
+  return cellsOf(indices, 2);
+}
+
+/// Two triangles for each of the strokes [first, last).
+vtkSmartPointer<vtkCellArray> quads(size_t first, size_t last) {
+  auto indices = vtkSmartPointer<vtkTypeInt32Array>::New();
+  indices->SetNumberOfValues(static_cast<vtkIdType>(6 * (last - first)));
+  vtkTypeInt32* at = indices->GetPointer(0);
+  for (size_t s = first; s < last; ++s) {
+    const auto v = static_cast<vtkTypeInt32>(4 * s);
+    for (const int corner : {0, 2, 1, 1, 2, 3}) *at++ = v + corner;
+  }
+  return cellsOf(indices, 3);
 }
 
 std::array<float, 3> floats(const Vec3& v) {
@@ -60,6 +116,16 @@ Rgba rgbaOf(const Colour& colour) {
     return static_cast<uint8_t>(std::lround(std::clamp(v, 0.0, 1.0) * 255.0));
   };
   return {byte(colour.r), byte(colour.g), byte(colour.b), byte(colour.a)};
+}
+
+bool drawsThinStrokes(vtkRenderer* renderer) {
+  vtkOpenGLState* state = stateOf(renderer);
+  float widths[2] = {0.0F, 0.0F};
+  state->vtkglGetFloatv(GL_ALIASED_LINE_WIDTH_RANGE, widths);
+  int flags = 0;
+  state->vtkglGetIntegerv(GL_CONTEXT_FLAGS, &flags);
+  // Contexts without what is deprecated refuse wide lines, whatever the range.
+  return widths[1] >= rasterPixels && (flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT) == 0;
 }
 
 struct StrokeBatch::Internals {
@@ -77,6 +143,8 @@ struct StrokeBatch::Internals {
   /// points lie together, as those of a stroke do until the shader spreads them.
   vtkSmartPointer<vtkPoints> points = vtkSmartPointer<vtkPoints>::New();
 
+  bool thin() const { return look == StrokeLook::Thin; }
+  size_t corners() const { return thin() ? 2 : 4; }
   std::array<vtkFloatArray*, 3> arrays() { return {from, to, ink}; }
   std::vector<vtkSmartPointer<vtkPolyData>> parts;  ///< one per layer; all share the arrays
   std::vector<vtkSmartPointer<vtkActor>> actors;
@@ -88,7 +156,11 @@ struct StrokeBatch::Internals {
 };
 
 void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
-  auto mapper = vtkSmartPointer<vtkOpenGLPolyDataMapper>::New();
+  vtkSmartPointer<vtkOpenGLPolyDataMapper> mapper;
+  if (thin())
+    mapper = vtkSmartPointer<WideLineMapper>::New();
+  else
+    mapper = vtkSmartPointer<vtkOpenGLPolyDataMapper>::New();
   mapper->SetInputData(part);
   mapper->ScalarVisibilityOff();
   mapper->SetVBOShiftScaleMethod(vtkOpenGLVertexBufferObject::DISABLE_SHIFT_SCALE);
@@ -102,10 +174,11 @@ void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
   actor->PickableOff();
   actor->UseBoundsOff();
   vtkShaderProperty* shaders = actor->GetShaderProperty();
-  const bool limbs = look == StrokeLook::Limbs;
-  shaders->SetVertexShaderCode(limbs ? limbVertexShader : flatVertexShader);
-  shaders->SetFragmentShaderCode(limbs ? limbFragmentShader : flatFragmentShader);
-  if (limbs) shaders->GetFragmentCustomUniforms()->SetUniformi("strokePass", pass);
+  shaders->SetVertexShaderCode(programsOf(look).vertex);
+  shaders->SetFragmentShaderCode(programsOf(look).fragment);
+  if (look == StrokeLook::Limbs)
+    shaders->GetFragmentCustomUniforms()->SetUniformi("strokePass", pass);
+  if (thin()) actor->GetProperty()->SetLineWidth(rasterPixels);
   renderer->AddActor(actor);
   actors.push_back(actor);
 }
@@ -121,11 +194,13 @@ void StrokeBatch::Internals::addPart() {
 
 void StrokeBatch::Internals::resize(size_t count) {
   capacity = std::max<size_t>(16, count + count / 2);
-  const auto tuples = static_cast<vtkIdType>(corners * capacity);
+  const auto tuples = static_cast<vtkIdType>(corners() * capacity);
   for (vtkFloatArray* array : arrays()) array->SetNumberOfTuples(tuples);
   points->SetNumberOfPoints(tuples);
-  for (vtkIdType v = 0; v < tuples; ++v)
-    points->SetPoint(v, static_cast<double>((v >> 1) & 1), static_cast<double>(v & 1), 0.0);
+  for (vtkIdType v = 0; v < tuples; ++v) {
+    const vtkIdType end = thin() ? v & 1 : (v >> 1) & 1, side = thin() ? 0 : v & 1;
+    points->SetPoint(v, static_cast<double>(end), static_cast<double>(side), 0.0);
+  }
   points->Modified();
   // What lies beyond the strokes in use is never drawn, but it is uploaded.
   for (vtkFloatArray* array : arrays()) array->FillValue(0.0F);
@@ -139,7 +214,12 @@ void StrokeBatch::Internals::cut(size_t count, std::span<const uint32_t> starts)
   }
   if (next == cuts) return;
   cuts = std::move(next);
-  for (size_t g = 0; g < parts.size(); ++g) parts[g]->SetPolys(quads(cuts[g], cuts[g + 1]));
+  for (size_t g = 0; g < parts.size(); ++g) {
+    if (thin())
+      parts[g]->SetLines(segments(cuts[g], cuts[g + 1]));
+    else
+      parts[g]->SetPolys(quads(cuts[g], cuts[g + 1]));
+  }
 }
 
 StrokeBatch::StrokeBatch(vtkRenderer* renderer, StrokeLook look, int layers)
@@ -168,7 +248,7 @@ void StrokeBatch::set(std::span<const Stroke> strokes, std::span<const uint32_t>
     const Stroke& s = strokes[index];
     const auto colour = static_cast<float>(s.colour[0] + 256 * s.colour[1] + 65536 * s.colour[2]);
     const auto rest = static_cast<float>(s.colour[3] + 256 * static_cast<int>(s.kind));
-    for (size_t corner = 0; corner < corners; ++corner) {
+    for (size_t corner = 0; corner < i.corners(); ++corner) {
       from = std::copy_n(s.from.data(), 3, from);
       *from++ = s.radiusFrom;
       to = std::copy_n(s.to.data(), 3, to);
@@ -197,8 +277,14 @@ void StrokeBatch::setView(const StrokeView& view) {
   for (const auto& actor : m_internals->actors) {
     vtkUniforms* vertex = actor->GetShaderProperty()->GetVertexCustomUniforms();
     vertex->SetUniform4f("strokeEye", seen);
-    vertex->SetUniformf("strokePixel", static_cast<float>(across / view.heightPixels));
-    if (m_internals->look == StrokeLook::Flat) continue;
+    vertex->SetUniformf("strokePixel", static_cast<float>(across / view.viewport[3]));
+    if (m_internals->thin()) {
+      const auto [left, low, width, height] = view.viewport;
+      const float window[4] = {static_cast<float>(left), static_cast<float>(low),
+                               static_cast<float>(width), static_cast<float>(height)};
+      vertex->SetUniform4f("strokeWindow", window);
+    }
+    if (m_internals->look != StrokeLook::Limbs) continue;
     vertex->SetUniformf("strokeDepth", static_cast<float>(depth));
     vertex->SetUniform3f("strokeKey", floats(key).data());
     vertex->SetUniform3f("strokeFill", floats(fill).data());

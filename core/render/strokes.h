@@ -1,7 +1,7 @@
 // Private to the folder: every limb, line and ring of a moving scene as strokes that face the
-// viewer. One stroke is two triangles whose round shape, light and soft edge are worked out per
-// pixel: far fewer corners than a mesh of tubes, no facets, and smooth edges without
-// multisampling.
+// viewer. One stroke is two triangles (a thin one is a line) whose round shape, light and soft edge
+// are worked out per pixel: far fewer corners than a mesh of tubes, no facets, and smooth edges
+// without multisampling.
 #pragma once
 
 #include <array>
@@ -27,8 +27,17 @@ enum class StrokeKind : uint8_t {
   Link = 5,       ///< a Line without round ends
 };
 
-/// A batch draws either limbs or all the others.
-enum class StrokeLook { Limbs, Flat };
+/// What a batch draws.
+enum class StrokeLook {
+  Limbs,
+  Flat,  ///< all the others
+  Thin,  ///< Lines of at most thinLinePixels, for crowds: half the corners and fewer pixels
+};
+/// The largest radius of a thin line.
+inline constexpr float thinLinePixels = 0.8F;
+/// Whether the window of a renderer can draw thin strokes; if not, they are drawn as Flat ones.
+/// Only while it draws.
+bool drawsThinStrokes(vtkRenderer* renderer);
 
 using Rgba = std::array<uint8_t, 4>;
 Rgba rgbaOf(const Colour& colour);
@@ -43,7 +52,7 @@ struct Stroke {
 /// What the shaders need to know of the camera, with its clipping planes.
 struct StrokeView {
   Camera camera;
-  int heightPixels = 720;
+  std::array<int, 4> viewport = {0, 0, 1280, 720};  ///< left, low, width, height in the window
 };
 
 /// Strokes drawn at once. Buffers are kept and rewritten in place; they grow by halves.

@@ -1,5 +1,6 @@
 #include "panels/scene_view.h"
 
+#include <QSurfaceFormat>
 #include <algorithm>
 
 #include <vtkGenericOpenGLRenderWindow.h>
@@ -47,6 +48,14 @@ SceneView::SceneView(Workspace& workspace, QWidget* parent)
   connect(&m_hover, &QTimer::timeout, this, &SceneView::updateHover);
   connectWorkspace();
   schedule();
+}
+
+void SceneView::setDefaultFormat() {
+  QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
+  format.setSamples(0);
+  // Lines wider than a pixel are deprecated, and crowds are drawn with them.
+  format.setOption(QSurfaceFormat::DeprecatedFunctions);
+  QSurfaceFormat::setDefaultFormat(format);
 }
 
 SceneView::~SceneView() {

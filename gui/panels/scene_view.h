@@ -20,6 +20,8 @@ class SceneView : public QVTKOpenGLNativeWidget {
   Q_OBJECT
  public:
   SceneView(Workspace& workspace, QWidget* parent);
+  /// Before the application starts: the OpenGL that every view asks for.
+  static void setDefaultFormat();
   ~SceneView() override;
 
   const SceneSettings& settings() const { return m_settings; }

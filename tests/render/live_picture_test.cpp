@@ -79,7 +79,8 @@ TEST(LivePicture, TheHighlightedMotionKeepsItsColourAndTheOthersStepBack) {
   for (Vec3& p : aside.positions) p.x() += 1.5F;
   const auto strength = [&](const LiveScene& scene, size_t motion) {
     const Vec3 place = scene.pose(motion)[7];
-    const uint8_t* p = pixelAt(pictureOf(scene), scene.screenPoint(place, width, height));
+    const Image image = pictureOf(scene);
+    const uint8_t* p = pixelAt(image, scene.screenPoint(place, width, height));
     return p[0] - p[1];
   };
   LiveScene scene = sceneOf({motionOf(tinyClip(2), red), motionOf(aside, red)});
@@ -103,9 +104,9 @@ TEST(LivePicture, NearFiguresHideFarOnes) {
     scene.orbit(0.0, -0.05);
     const Vec3 forward = scene.camera().forward();
     const bool redNearer = forward.dot(scene.pose(0)[0]) < forward.dot(scene.pose(1)[0]);
-    const uint8_t* p =
-        pixelAt(pictureOf(scene),
-                scene.screenPoint(redNearer ? scene.pose(0)[0] : scene.pose(1)[0], width, height));
+    const Vec3 front = scene.pose(redNearer ? 0 : 1)[0];
+    const Image image = pictureOf(scene);
+    const uint8_t* p = pixelAt(image, scene.screenPoint(front, width, height));
     EXPECT_TRUE(redNearer ? isRed(p) : isBlue(p)) << z;
   }
 }

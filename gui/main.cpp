@@ -1,5 +1,6 @@
 // marey-workbench: the window.
 #include <QCommandLineParser>
+#include <QLoggingCategory>
 #include <QTimer>
 #include <cstdio>
 
@@ -8,6 +9,7 @@
 #include "panels/scene_view.h"
 #include "shell/application.h"
 #include "shell/main_window.h"
+#include "shell/start_time.h"
 
 #include "nn/threads.h"
 
@@ -15,6 +17,24 @@ namespace marey::gui {
 namespace {
 
 constexpr int kWrongUsage = 2;
+
+/// For whoever asks by QT_LOGGING_RULES=marey.start=true.
+Q_LOGGING_CATEGORY(startLog, "marey.start", QtWarningMsg)
+
+/// What is due, the first drawing too, is done before a timer of no time runs out.
+void logStart(JobQueue& jobs) {
+  if (!startLog().isDebugEnabled()) return;
+  QTimer::singleShot(0, &jobs, [] {
+    qCDebug(startLog, "the window answers %.2f s after the start", secondsSinceStart());
+  });
+  auto* once = new QObject(&jobs);
+  QObject::connect(&jobs, &JobQueue::ended, once, [once, &jobs] {
+    once->deleteLater();
+    QTimer::singleShot(0, &jobs, [] {
+      qCDebug(startLog, "its motions are shown %.2f s after the start", secondsSinceStart());
+    });
+  });
+}
 
 void describe(QCommandLineParser& parser) {
   parser.setApplicationDescription(
@@ -57,7 +77,10 @@ int run(int argc, char** argv) {
     workspace.report(QObject::tr("The last command"), error);
   });
   window.show();
-  QTimer::singleShot(0, &window, [&] { window.start(parser.positionalArguments()); });
+  QTimer::singleShot(0, &window, [&] {
+    window.start(parser.positionalArguments());
+    logStart(jobs);
+  });
   return QApplication::exec();
 }
 

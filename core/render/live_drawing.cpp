@@ -215,7 +215,7 @@ void LiveScene::Internals::draw() {
     setClipping(from);
     setViews();
   }
-  floor.prepare(renderer);
+  cost.floorCopied = floor.prepare(renderer);
   sceneChanged = timeChanged = false;
   seenFrom = eye->GetMTime();
   cost.figures = cost.strokes = 0;

@@ -256,11 +256,12 @@ void LiveFloor::setVisible(bool visible) {
   m_internals->show();
 }
 
-void LiveFloor::prepare(vtkRenderer* renderer) {
+bool LiveFloor::prepare(vtkRenderer* renderer) {
   // What is copied over the whole view need not be cleared before.
   const bool copied = m_internals->visible && m_internals->mapper->prepare(renderer);
   renderer->SetPreserveColorBuffer(copied ? 1 : 0);
   renderer->SetPreserveDepthBuffer(copied ? 1 : 0);
+  return copied;
 }
 
 void LiveFloor::setPlace(double x, double z, double radiusM) {

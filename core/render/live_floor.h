@@ -31,8 +31,8 @@ class LiveFloor {
   void setLook(const Backdrop& backdrop, double gridM);
   void setShadows(const ShadowMap& map);
   /// At the start of every drawing, when the camera is as it will be drawn. While neither it nor
-  /// the floor changes, the floor is copied from an earlier drawing.
-  void prepare(vtkRenderer* renderer);
+  /// the floor changes, the floor is copied from an earlier drawing: true.
+  bool prepare(vtkRenderer* renderer);
 
  private:
   struct Internals;

@@ -75,10 +75,11 @@ struct Hit {
 
 /// What the last drawing cost and drew.
 struct LiveCost {
-  double fillMs = 0.0;  ///< poses and vertices, before OpenGL
-  size_t figures = 0;   ///< bodies, with ghosts
-  size_t strokes = 0;   ///< limbs, lines and rings
-  bool lines = false;   ///< whether Auto chose lines
+  double fillMs = 0.0;       ///< poses and vertices, before OpenGL
+  size_t figures = 0;        ///< bodies, with ghosts
+  size_t strokes = 0;        ///< limbs, lines and rings
+  bool lines = false;        ///< whether Auto chose lines
+  bool floorCopied = false;  ///< from an earlier drawing; neither it nor the camera has changed
 };
 
 /// Positions on screen are in pixels of a picture width x height, from its top left. Use from one

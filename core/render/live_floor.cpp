@@ -165,8 +165,8 @@ const Backdrop& backdropOf(bool dark) {
   return backdrops[dark ? 1 : 0];
 }
 
-/// Polygons on the floor with a program of their own.
 struct LiveFloor::Internals {
+  /// Polygons on the floor with a program of their own.
   struct Layer {
     vtkSmartPointer<vtkActor> actor = vtkSmartPointer<vtkActor>::New();
     vtkSmartPointer<vtkPoints> points = vtkSmartPointer<vtkPoints>::New();

@@ -13,14 +13,13 @@
 namespace marey::nn {
 namespace {
 
+constexpr size_t kCacheLine = 64, kLargePage = size_t{2} << 20;
+
 /// Large pages spare the processor most look-ups of addresses. Whole ones within the storage only:
 /// no memory is added.
 void askForLargePages([[maybe_unused]] void* memory, [[maybe_unused]] size_t bytes) {
 #ifdef __linux__
-  constexpr uintptr_t kLarge = uintptr_t{2} << 20;
-  const auto begin = (reinterpret_cast<uintptr_t>(memory) + kLarge - 1) / kLarge * kLarge,
-             end = (reinterpret_cast<uintptr_t>(memory) + bytes) / kLarge * kLarge;
-  if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  if (bytes >= kLargePage) madvise(memory, bytes / kLargePage * kLargePage, MADV_HUGEPAGE);
 #endif
 }
 
@@ -48,10 +47,12 @@ size_t rowBytes(Precision precision) {
 
 AlignedFloats::AlignedFloats(size_t count) : m_size((count + kLanes - 1) / kLanes * kLanes) {
   if (m_size == 0) return;
-  void* memory = std::aligned_alloc(64, m_size * sizeof(float));
-  if (memory == nullptr) throw std::bad_alloc();
-  askForLargePages(memory, m_size * sizeof(float));
-  std::memset(memory, 0, m_size * sizeof(float));
+  const size_t bytes = m_size * sizeof(float);
+  void* memory = nullptr;
+  if (posix_memalign(&memory, bytes >= kLargePage ? kLargePage : kCacheLine, bytes) != 0)
+    throw std::bad_alloc();
+  askForLargePages(memory, bytes);
+  std::memset(memory, 0, bytes);
   m_values.reset(static_cast<float*>(memory));
 }
 
@@ -107,12 +108,15 @@ void PackedMatrix::get(long column, long first, std::span<float> weights) const 
 void PackedMatrix::multiply(const Product& p) const {
   const Kernels& k = kernels();
   const auto product = m_precision == Precision::Float32 ? k.product : k.productBf16;
-  for (long i = p.begin; i < p.end; ++i) {
+  for (long i = p.begin; i < p.end; i += 2) {
     const long column = (i - p.begin) * kPanel;
+    const int panels = i + 1 < p.end ? 2 : 1;
     product({.inputs = p.inputs.data(),
              .runs = static_cast<int>(p.inputs.size()),
              .panel = panel(i, p.first),
-             .next = panel(std::min(i + 1, m_panels - 1), p.first),
+             .panels = panels,
+             .panelBytes = m_inputs * static_cast<long>(rowBytes(m_precision)),
+             .next = panel(std::min(i + panels, m_panels - 1), p.first),
              .start = p.start + column,
              .startStride = p.startStride,
              .out = p.out + column,

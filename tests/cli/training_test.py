@@ -1,5 +1,6 @@
 """What a killed run, a repeated run and a prolonged run have in common: the same numbers."""
 import io
+import json
 import math
 import pathlib
 import re
@@ -161,11 +162,21 @@ class Sampling(SharedModelCase):
         full = self.sample("full", 1, "--seed", 4, "--format", "csv")
         rounded = self.sample("rounded", 1, "--seed", 4, "--format", "csv", "--weights", "bf16")
         numbers = [[float(v) for line in clips["sample_000.csv"].decode().splitlines()[1:]
-                    for v in line.split(",")] for clips in (full, rounded)]
+                    for v in line.split(",")[3:]] for clips in (full, rounded)]
         worst = max(abs(a - b) for a, b in zip(*numbers))
         self.assertEqual(len(numbers[0]), len(numbers[1]))
         self.assertLess(worst, 0.2)
         self.assertGreater(worst, 0.0)
+        for name, weights in (("full", "float32"), ("rounded", "bf16")):
+            recipe = json.loads((self.dir / name / "sample_000.csv.recipe.json").read_text())
+            self.assertEqual(recipe["weights"], weights)
+
+    def test_memory_grows_by_less_than_two_megabytes_with_each_motion(self):
+        peaks = [self.run_json("sample", self.model, "--path", "preset:figure-eight", "--seconds",
+                               4, "-n", count, "--out", self.dir / f"peak-{count}", "--format",
+                               "npz")["peak_memory_mb"] for count in (1, 41)]
+        self.assertGreater(peaks[0], 1.0)
+        self.assertLess(peaks[1] - peaks[0], 2.0 * 40)
 
     def test_temperature_zero_leaves_nothing_random(self):
         cold = self.sample("cold", 2, "--temperature", 0)

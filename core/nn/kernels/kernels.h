@@ -26,17 +26,20 @@ struct Inputs {
   long count = 0;
 };
 
-/// out[r][0..31] = start[r][0..31] + sum over the inputs of row r times the panel's rows.
+/// out[r][0..31] = start[r][0..31] + sum over the inputs of row r times the panel's rows; and so
+/// the next panel's 32 columns, where there are two.
 struct PanelProduct {
   const Inputs* inputs = nullptr;
   int runs = 0;
   const std::byte* panel = nullptr;  ///< [sum of counts, 32], float or bf16 (packed_matrix.h)
-  const std::byte* next = nullptr;   ///< panel that will be wanted next; fetched meanwhile
+  int panels = 1;                    ///< 1 or 2
+  long panelBytes = 0;               ///< from one panel to the next
+  const std::byte* next = nullptr;   ///< panel that will be wanted after them; fetched meanwhile
   const float* start = nullptr;
   long startStride = 0;  ///< 0: the same for every row
   float* out = nullptr;
   long outStride = 0;
-  long rows = 0;
+  long rows = 0;  ///< none is allowed: a member of a team may have no share
 };
 
 /// A block of `kLanes` recurrent units. Gates [rows, 64] in four groups of 16: LSTM i, f, g, o;

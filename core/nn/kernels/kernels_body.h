@@ -28,15 +28,15 @@ struct Bf16Weights {
   static Lanes read(const std::byte* row, int half) { return loadBf16(row, half); }
 };
 
-constexpr long kFetchAhead = 4096;  ///< bytes; products with few rows wait for memory
+constexpr long kFetchAhead = 2048;  ///< bytes; products with few rows wait for memory
 
-/// Sums of `Rows` rows and `kTileLanes` vectors of columns. Four rows share a pointer: as many
-/// pointers as rows would not fit the registers.
-template <typename Weights, int Rows>
+/// Sums of `Rows` rows and `kTileLanes` vectors of columns in each of `Panels` panels. Four rows
+/// share a pointer: as many pointers as rows would not fit the registers.
+template <typename Weights, int Rows, int Panels>
 struct Tile {
   static constexpr int kPointers = (Rows + 3) / 4;
 
-  Lanes sums[Rows][kTileLanes];
+  Lanes sums[Panels][Rows][kTileLanes];
   const char* x[kPointers];
   long step;
 
@@ -44,32 +44,39 @@ struct Tile {
     return *reinterpret_cast<const float*>(x[row / 4] + (row % 4) * step + 4 * k);
   }
 
-  inline __attribute__((always_inline)) void add(const std::byte* weights, int k, int half) {
-    Lanes w[kTileLanes];
-    for (int j = 0; j < kTileLanes; ++j)
-      w[j] = Weights::read(weights + k * Weights::kRowBytes, half + j);
-#pragma GCC unroll 16
-    for (int r = 0; r < Rows; ++r) {
-      const Lanes value = all(input(r, k));
+  /// Input k of all rows, with its weights of all panels, `panelBytes` apart.
+  inline __attribute__((always_inline)) void add(const std::byte* weights, long panelBytes, int k,
+                                                 int half) {
 #pragma GCC unroll 2
-      for (int j = 0; j < kTileLanes; ++j) sums[r][j] = fma(value, w[j], sums[r][j]);
+    for (int q = 0; q < Panels; ++q) {
+      Lanes w[kTileLanes];
+      for (int j = 0; j < kTileLanes; ++j)
+        w[j] = Weights::read(weights + q * panelBytes + k * Weights::kRowBytes, half + j);
+#pragma GCC unroll 16
+      for (int r = 0; r < Rows; ++r) {
+        const Lanes value = all(input(r, k));
+#pragma GCC unroll 2
+        for (int j = 0; j < kTileLanes; ++j) sums[q][r][j] = fma(value, w[j], sums[q][r][j]);
+      }
     }
   }
 };
 
-/// Columns half * 16 .. of rows `first` .. first + Rows - 1.
-template <typename Weights, int Rows>
+/// Columns half * 16 .. of rows `first` .. first + Rows - 1. `fetch`: what is to be brought into
+/// the cache meanwhile, as long as the panel; so for each of `Panels`.
+template <typename Weights, int Rows, int Panels>
 void tileProduct(const PanelProduct& p, long first, int half, const std::byte* fetch) {
-  Tile<Weights, Rows> tile;
-  const long column = half * kLanes;
-  for (int r = 0; r < Rows; ++r)
-    for (int j = 0; j < kTileLanes; ++j)
-      tile.sums[r][j] = load(p.start + (first + r) * p.startStride + column + j * kLanes);
+  Tile<Weights, Rows, Panels> tile;
+  const auto column = [&](int q, int j) { return q * kPanel + (half + j) * kLanes; };
+  for (int q = 0; q < Panels; ++q)
+    for (int r = 0; r < Rows; ++r)
+      for (int j = 0; j < kTileLanes; ++j)
+        tile.sums[q][r][j] = load(p.start + (first + r) * p.startStride + column(q, j));
   const std::byte* weights = p.panel;
   for (int i = 0; i < p.runs; ++i) {
     const Inputs& run = p.inputs[i];
     tile.step = 4 * run.stride;
-    for (int q = 0; q < Tile<Weights, Rows>::kPointers; ++q)
+    for (int q = 0; q < Tile<Weights, Rows, Panels>::kPointers; ++q)
       tile.x[q] = reinterpret_cast<const char*>(run.values + (first + 4 * q) * run.stride);
     const auto advance = [&](int inputs) {
       weights += inputs * Weights::kRowBytes;
@@ -78,37 +85,40 @@ void tileProduct(const PanelProduct& p, long first, int half, const std::byte* f
     };
     long left = run.count;
     for (; left >= 2; left -= 2) {
-      __builtin_prefetch(fetch, 0, 2);
-      __builtin_prefetch(fetch + Weights::kRowBytes, 0, 2);
-      tile.add(weights, 0, half);
-      tile.add(weights, 1, half);
+      for (int q = 0; q < Panels; ++q) {
+        __builtin_prefetch(fetch + q * p.panelBytes, 0, 2);
+        __builtin_prefetch(fetch + q * p.panelBytes + Weights::kRowBytes, 0, 2);
+      }
+      tile.add(weights, p.panelBytes, 0, half);
+      tile.add(weights, p.panelBytes, 1, half);
       advance(2);
     }
     if (left > 0) {
-      tile.add(weights, 0, half);
+      tile.add(weights, p.panelBytes, 0, half);
       advance(1);
     }
   }
-  for (int r = 0; r < Rows; ++r)
-    for (int j = 0; j < kTileLanes; ++j)
-      store(p.out + (first + r) * p.outStride + column + j * kLanes, tile.sums[r][j]);
+  for (int q = 0; q < Panels; ++q)
+    for (int r = 0; r < Rows; ++r)
+      for (int j = 0; j < kTileLanes; ++j)
+        store(p.out + (first + r) * p.outStride + column(q, j), tile.sums[q][r][j]);
 }
 
 using TileFunction = void (*)(const PanelProduct&, long, int, const std::byte*);
 
-template <typename Weights, int... Is>
+template <typename Weights, int Panels, int... Is>
 struct TileTable {
-  static constexpr TileFunction kByRows[] = {tileProduct<Weights, Is>...};
+  static constexpr TileFunction kByRows[] = {tileProduct<Weights, Is, Panels>...};
 };
 
-template <typename Weights, int N, int... Is>
-struct MakeTable : MakeTable<Weights, N - 1, N, Is...> {};
-template <typename Weights, int... Is>
-struct MakeTable<Weights, 0, Is...> : TileTable<Weights, Is...> {};
+template <typename Weights, int Panels, int N, int... Is>
+struct MakeTable : MakeTable<Weights, Panels, N - 1, N, Is...> {};
+template <typename Weights, int Panels, int... Is>
+struct MakeTable<Weights, Panels, 0, Is...> : TileTable<Weights, Panels, Is...> {};
 
 template <typename Weights>
-void product(const PanelProduct& p) {
-  using Table = MakeTable<Weights, kTileRows>;
+void panelProduct(const PanelProduct& p) {
+  using Table = MakeTable<Weights, 1, kTileRows>;
   const long tiles = (p.rows + kTileRows - 1) / kTileRows;
   for (long t = 0; t < tiles; ++t) {
     const long first = t * p.rows / tiles, rows = (t + 1) * p.rows / tiles - first;
@@ -117,6 +127,25 @@ void product(const PanelProduct& p) {
     const std::byte* fetch = tiles == 1 ? p.panel + kFetchAhead : t < 2 ? p.next + 64 * t : p.panel;
     for (int half = 0; half < 2; half += kTileLanes)
       Table::kByRows[rows - 1](p, first, half, fetch);
+  }
+}
+
+template <typename Weights>
+void product(const PanelProduct& p) {
+  // Few rows wait for memory, which gives more where it is read in two places at once.
+  if (p.rows > 0 && p.rows <= kPairRows && p.panels == 2) {
+    using Table = MakeTable<Weights, 2, kPairRows>;
+    for (int half = 0; half < 2; half += kTileLanes)
+      Table::kByRows[p.rows - 1](p, 0, half, p.panel + kFetchAhead);
+    return;
+  }
+  PanelProduct one = p;
+  for (long q = 0; q < p.panels; ++q) {
+    one.panel = p.panel + q * p.panelBytes;
+    one.next = q + 1 < p.panels ? one.panel + p.panelBytes : p.next;
+    one.start = p.start + q * kPanel;
+    one.out = p.out + q * kPanel;
+    panelProduct<Weights>(one);
   }
 }
 

@@ -7,6 +7,7 @@ namespace {
 
 constexpr int kTileRows = 6;  ///< 12 of 16 registers hold sums
 constexpr int kTileLanes = 1;
+constexpr int kPairRows = 2;  ///< with two panels at once
 
 struct Lanes {
   __m256 a, b;

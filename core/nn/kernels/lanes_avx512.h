@@ -7,6 +7,7 @@ namespace {
 
 constexpr int kTileRows = 12;  ///< 24 of 32 registers hold sums
 constexpr int kTileLanes = 2;
+constexpr int kPairRows = 4;  ///< with two panels at once
 
 struct Lanes {
   __m512 v;

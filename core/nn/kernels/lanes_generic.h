@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kTileRows = 2;
 constexpr int kTileLanes = 1;
+constexpr int kPairRows = 1;  ///< with two panels at once
 
 struct Lanes {
   float v[16];

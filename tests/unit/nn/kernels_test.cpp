@@ -102,6 +102,43 @@ TEST_P(EveryIsa, ARowsProductIsTheSameBitsWhateverOtherRowsThereAre) {
     }
 }
 
+TEST_P(EveryIsa, TwoPanelsAtOnceAreTheSameBitsAsEachAlone) {
+  constexpr long kInputs = 37;
+  const auto x = noise(5, 20 * kInputs), panels = noise(6, 2 * kInputs * kPanel),
+             start = noise(7, 2 * kPanel);
+  for (const auto product : {kernels().product, kernels().productBf16}) {
+    const long panelBytes =
+        kInputs * kPanel * (product == kernels().product ? sizeof(float) : sizeof(uint16_t));
+    for (const long rows : {0L, 1L, 2L, 3L, 4L, 5L, 12L, 20L}) {
+      const Inputs run{x.data(), kInputs, kInputs};
+      std::vector<float> both(static_cast<size_t>(rows * 2 * kPanel)), each(both.size());
+      PanelProduct p{.inputs = &run,
+                     .runs = 1,
+                     .panel = reinterpret_cast<const std::byte*>(panels.data()),
+                     .panels = 2,
+                     .panelBytes = panelBytes,
+                     .start = start.data(),
+                     .out = both.data(),
+                     .outStride = 2 * kPanel,
+                     .rows = rows};
+      p.next = p.panel;
+      product(p);
+      p.panels = 1;
+      for (const long q : {0L, 1L}) {
+        p.panel = reinterpret_cast<const std::byte*>(panels.data()) + q * panelBytes;
+        p.start = start.data() + q * kPanel;
+        p.out = each.data() + q * kPanel;
+        product(p);
+      }
+      EXPECT_TRUE(std::equal(both.begin(), both.end(), each.begin(),
+                             [](float a, float b) {
+                               return std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b);
+                             }))
+          << rows << " rows";
+    }
+  }
+}
+
 TEST_P(EveryIsa, ARowOfBf16WeightsIsTheRowOfTheirValues) {
   const long inputs = 45;
   PackedMatrix narrow(inputs, kPanel, Precision::BFloat16);

@@ -1,7 +1,8 @@
 # marey_precompile(TARGET GROUP)
 #
 # The large headers of cmake/precompiled/GROUP.h are compiled once for all targets of the group,
-# which must have the same compiler options: the first one of them compiles, the others reuse.
+# which must have the same compiler options and the macros of the first: it compiles, the others
+# reuse.
 # Sources still include what they need: CMAKE_DISABLE_PRECOMPILE_HEADERS leaves all of this out.
 function(marey_precompile target group)
   get_property(owner GLOBAL PROPERTY "MAREY_PRECOMPILED_${group}")

@@ -72,14 +72,12 @@ void RecurrentStack::recurrence(const Layer& layer, size_t index, const FrameRow
     const long end = std::min(begin + kFramesBetween, frames.frames());
     runTeam(threads, [&](Team team) {
       // A team may turn out smaller than asked for.
-      for (size_t part = static_cast<size_t>(team.rank); own && part + 1 < shares.size();
-           part += static_cast<size_t>(team.size))
+      for (size_t part = static_cast<size_t>(team.rank()); own && part + 1 < shares.size();
+           part += static_cast<size_t>(team.size()))
         for (long t = begin; t < end; ++t)
           frame(t, {shares[part], shares[part + 1]}, {0, blocks()});
-      for (long t = begin; !own && t < end; ++t) {
-        frame(t, {0, sequences}, team.share(blocks()));
-        team.wait();
-      }
+      for (long t = begin; !own && t < end; ++t)
+        team.divide(blocks(), [&](std::pair<long, long> some) { frame(t, {0, sequences}, some); });
     });
   }
   // The last frame of every sequence is where it goes on from.

@@ -164,7 +164,7 @@ void RecurrentStack::run(const Layer& layer, const Call& call, std::pair<long, l
   }
 }
 
-void RecurrentStack::step(const Team& team, RowRange rows, std::span<const Inputs> inputs,
+void RecurrentStack::step(Team& team, RowRange rows, std::span<const Inputs> inputs,
                           StackState& state) const {
   const bool recurrent = m_shape.cell != Cell::Feedforward;
   for (size_t i = 0; i < m_layers.size(); ++i) {
@@ -180,8 +180,7 @@ void RecurrentStack::step(const Team& team, RowRange rows, std::span<const Input
       call.previous = state.hidden[i].data();
       call.inputs.add({call.previous, m_hiddenStride, m_shape.hidden});
     }
-    run(m_layers[i], call, team.share(blocks()));
-    team.wait();
+    team.divide(blocks(), [&](std::pair<long, long> part) { run(m_layers[i], call, part); });
   }
 }
 

@@ -75,8 +75,7 @@ class RecurrentStack {
   /// The next frame of some rows, every layer. `inputs` are those of the first layer, from row 0
   /// of the batch on; their counts add up to shape().inputs. The members of `team` share the
   /// rows. The outputs are in output(state) once every row is done; then advance(state).
-  void step(const Team& team, RowRange rows, std::span<const Inputs> inputs,
-            StackState& state) const;
+  void step(Team& team, RowRange rows, std::span<const Inputs> inputs, StackState& state) const;
   /// Last layer of the frame just made, [rows, hiddenStride].
   Inputs output(const StackState& state) const;
   void advance(StackState& state) const;

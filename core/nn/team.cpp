@@ -1,12 +1,21 @@
 #include "nn/team.h"
 
+#include <thread>
+
 #include <omp.h>
 
 namespace marey::nn {
 
-void Team::wait() const {
-  if (size == 1) return;
-#pragma omp barrier
+/// Looks at a number that another core is about to change, before the core is given to others.
+constexpr int kLooks = 4000;
+
+void Team::waitUntilDone(long end) const {
+  for (int looks = 0; m_shared->done.load() < end; ++looks) {
+    if (looks >= kLooks) std::this_thread::yield();
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#endif
+  }
 }
 
 int teamThreads() {
@@ -18,8 +27,9 @@ void runTeam(int threads, TeamFunction function, const void* work) {
     function(work, Team{});
     return;
   }
+  Team::Shared shared;
 #pragma omp parallel num_threads(threads)
-  function(work, Team{omp_get_thread_num(), omp_get_num_threads()});
+  function(work, Team(omp_get_thread_num(), omp_get_num_threads(), shared));
 }
 
 OneThread::OneThread() : m_before(omp_get_max_threads()) {

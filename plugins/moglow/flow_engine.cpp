@@ -89,7 +89,7 @@ void FlowEngine::couple(const Step& step, const nn::Inputs& hidden, nn::RowRange
   }
 }
 
-void FlowEngine::stepToData(const nn::Team& team, nn::RowRange rows, State& state,
+void FlowEngine::stepToData(nn::Team& team, nn::RowRange rows, State& state,
                             std::span<const nn::Inputs> conditioning) const {
   float *values = state.values.data(), *mixed = state.mixed.data();
   std::array<nn::Inputs, 3> inputs;
@@ -98,18 +98,20 @@ void FlowEngine::stepToData(const nn::Team& team, nn::RowRange rows, State& stat
     const Step& step = m_steps[k];
     inputs[0] = {values, m_stride, passed()};
     step.stack.step(team, rows, {inputs.data(), conditioning.size() + 1}, state.steps[k]);
-    couple(step, step.stack.output(state.steps[k]), rows, team.share(blocks()), values, nullptr);
-    team.wait();
-    const auto [first, last] = team.share(rows.count());
-    const long begin = rows.begin + first;
-    const nn::Inputs own{values + begin * m_stride, m_stride, m_channels};
-    step.toData.multiply({.inputs = {&own, 1},
-                          .end = step.toData.panels(),
-                          .start = step.toDataStart.data(),
-                          .out = mixed + begin * m_stride,
-                          .outStride = m_stride,
-                          .rows = last - first});
-    team.wait();
+    const nn::Inputs hidden = step.stack.output(state.steps[k]);
+    team.divide(blocks(), [&](std::pair<long, long> part) {
+      couple(step, hidden, rows, part, values, nullptr);
+    });
+    team.divide(rows.count(), [&](std::pair<long, long> part) {
+      const long begin = rows.begin + part.first;
+      const nn::Inputs own{values + begin * m_stride, m_stride, m_channels};
+      step.toData.multiply({.inputs = {&own, 1},
+                            .end = step.toData.panels(),
+                            .start = step.toDataStart.data(),
+                            .out = mixed + begin * m_stride,
+                            .outStride = m_stride,
+                            .rows = part.second - part.first});
+    });
     std::swap(values, mixed);
   }
 }
@@ -119,8 +121,9 @@ void FlowEngine::toData(State& state, std::span<const nn::Inputs> conditioning) 
   const bool own = state.rows >= threads * kRowsOfOwn;
   nn::runTeam(threads, [&](nn::Team team) {
     const auto [begin, end] = team.share(state.rows);
+    nn::Team alone;
     if (own)
-      stepToData(nn::Team{}, {begin, end}, state, conditioning);
+      stepToData(alone, {begin, end}, state, conditioning);
     else
       stepToData(team, {0, state.rows}, state, conditioning);
   });

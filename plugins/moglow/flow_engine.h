@@ -75,7 +75,7 @@ class FlowEngine {
   Step packed(long index, TensorFile& file, const std::string& origin) const;
   void packMixing(Step& step, const std::string& prefix, const TensorFile& file,
                   const std::string& origin) const;
-  void stepToData(const nn::Team& team, nn::RowRange rows, State& state,
+  void stepToData(nn::Team& team, nn::RowRange rows, State& state,
                   std::span<const nn::Inputs> conditioning) const;
   void couple(const Step& step, const nn::Inputs& hidden, nn::RowRange rows,
               std::pair<long, long> blocks, float* values, double* logDet) const;

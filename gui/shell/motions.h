@@ -1,6 +1,8 @@
 // What the window shows: natural clips and sample sets, as plain values.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <compare>
 #include <map>
 #include <optional>
@@ -64,6 +66,13 @@ struct FrameSpan {
 };
 
 /// The frames of a clip inside a range of time, its ends included; all without a range.
-FrameSpan framesIn(const Clip& clip, const std::optional<TimeRange>& range);
+inline FrameSpan framesIn(const Clip& clip, const std::optional<TimeRange>& range) {
+  if (!range) return {0, clip.frameCount()};
+  // A frame whose time is the range's own end is inside, whatever the rounding.
+  constexpr double slack = 1e-9;
+  return {std::max(0, static_cast<int>(std::ceil(range->beginS * clip.fps - slack))),
+          std::min(clip.frameCount(),
+                   static_cast<int>(std::floor(range->endS * clip.fps + slack)) + 1)};
+}
 
 }  // namespace marey::gui

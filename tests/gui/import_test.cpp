@@ -189,10 +189,12 @@ TEST_F(Import, AnotherEulerOrderIsConvertedAndAdded) {
 }
 
 TEST_F(Import, ClosingTheDialogEndsItsWorkAndAddsNothing) {
-  writeWalks(400);
+  constexpr int kFiles = 1000;
+  writeWalks(kFiles);
   open({QString::fromStdString(m_motion)});
-  ASSERT_TRUE(waitUntil([this] { return m_table->model()->rowCount() == 400; }));
-  EXPECT_FALSE(m_jobs->idle());
+  // In the midst of looking into them.
+  ASSERT_TRUE(waitUntil(
+      [this] { return m_table->model()->rowCount() == kFiles && !m_jobs->idle(); }, 20.0));
   QTest::mouseClick(child<QPushButton>(*m_dialog, "importClose"), Qt::LeftButton);
   QElapsedTimer clock;
   clock.start();

@@ -65,6 +65,8 @@ class StatisticsPanel : public PlotPanel {
     const StatisticsInput input = inputNow();
     m_compute->setEnabled(!input.sets.empty());
     if (m_shown) return showInput(input);
+    // A hint would end the work; what has changed meanwhile is told when it is done.
+    if (computing()) return;
     showHint(input.sets.empty()
                  ? tr("No motion is visible: open natural clips or sample a path first.")
                  : tr("Press \"Compute\" to work out every statistic of %1.")

@@ -3,6 +3,7 @@
 #include <QAction>
 #include <QComboBox>
 #include <QPushButton>
+#include <QTableWidget>
 #include <QTest>
 #include <chrono>
 #include <cstdlib>
@@ -115,6 +116,9 @@ TEST_F(RealDataWindow, HoldsHeldOutClipsAndAHundredSamplesAlongADrawnPath) {
     if (spec.id == QLatin1String("statistics"))
       QTest::mouseClick(child<QPushButton>(*panel, "statisticsCompute"), Qt::LeftButton);
     ASSERT_TRUE(idle());
+    if (spec.id == QLatin1String("statistics")) {
+      EXPECT_GT(child<QTableWidget>(*panel, "statisticsTable")->rowCount(), 0);
+    }
     EXPECT_TRUE(waitUntil([&] { return showsSomething(pictureOf(*panel)); }, 30.0));
     std::printf("%s: %.0f ms until it has all it shows\n", spec.id.toStdString().c_str(),
                 nowMs() - shown);

@@ -3,6 +3,7 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QPushButton>
+#include <QTableWidget>
 #include <QTest>
 #include <ctime>
 
@@ -126,6 +127,15 @@ TEST_F(Views, APickedBodyLightsUpItsCurveInEveryPlot) {
     m_workspace->select({.motions = {{group, 1}}});
     EXPECT_FALSE(chart->highlights().empty());
   }
+}
+
+TEST_F(Views, StatisticsAreFinishedWhateverChangesMeanwhile) {
+  QWidget* panel = m_window->showPanel("statistics");
+  settle();
+  QTest::mouseClick(child<QPushButton>(*panel, "statisticsCompute"), Qt::LeftButton);
+  m_workspace->edit(QStringLiteral("Title"), [](Experiment& e) { e.title = "Another"; });
+  ASSERT_TRUE(idle());
+  EXPECT_GT(child<QTableWidget>(*panel, "statisticsTable")->rowCount(), 0);
 }
 
 TEST_F(Views, ThousandMotionsDoNotHoldUpTheWindow) {

@@ -1,18 +1,6 @@
 // For tests of the window; see MareyPrecompiled.cmake.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include <QAction>
 #include <QApplication>
 #include <QBoxLayout>
@@ -27,6 +15,17 @@
 #include <QTest>
 #include <QTimer>
 #include <QToolButton>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>

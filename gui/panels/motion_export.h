@@ -54,7 +54,7 @@ struct ExportRequest {
   bool orthographic = false;
   bool follow = false, trail = false, path = true;
   stats::ContactRule contacts = {};  ///< what the marks on the floor mark
-  double strobeS = 0.4;  ///< between the figures of a still or a trail
+  double strobeS = 0.4;              ///< between the figures of a still or a trail
 };
 
 struct ExportResult {

@@ -209,7 +209,7 @@ void LiveFloor::Internals::Layer::start(vtkRenderer* renderer, vtkOpenGLPolyData
 }
 
 void LiveFloor::Internals::Layer::cover(std::span<const FloorArea> areas) {
-  points->SetNumberOfPoints(static_cast<vtkIdType>(4 * areas.size()));
+  points->SetNumberOfPoints(4 * static_cast<vtkIdType>(areas.size()));
   cells->Reset();
   vtkIdType at = 0;
   for (const FloorArea& area : areas) {

@@ -88,7 +88,7 @@ vtkSmartPointer<vtkCellArray> cellsOf(vtkTypeInt32Array* indices, vtkIdType corn
 /// A line for each of the strokes [first, last).
 vtkSmartPointer<vtkCellArray> segments(size_t first, size_t last) {
   auto indices = vtkSmartPointer<vtkTypeInt32Array>::New();
-  indices->SetNumberOfValues(static_cast<vtkIdType>(2 * (last - first)));
+  indices->SetNumberOfValues(2 * static_cast<vtkIdType>(last - first));
   std::iota(indices->GetPointer(0), indices->GetPointer(0) + indices->GetNumberOfValues(),
             static_cast<vtkTypeInt32>(2 * first));
   return cellsOf(indices, 2);
@@ -97,7 +97,7 @@ vtkSmartPointer<vtkCellArray> segments(size_t first, size_t last) {
 /// Two triangles for each of the strokes [first, last).
 vtkSmartPointer<vtkCellArray> quads(size_t first, size_t last) {
   auto indices = vtkSmartPointer<vtkTypeInt32Array>::New();
-  indices->SetNumberOfValues(static_cast<vtkIdType>(6 * (last - first)));
+  indices->SetNumberOfValues(6 * static_cast<vtkIdType>(last - first));
   vtkTypeInt32* at = indices->GetPointer(0);
   for (size_t s = first; s < last; ++s) {
     const auto v = static_cast<vtkTypeInt32>(4 * s);

@@ -56,6 +56,10 @@ AlignedFloats::AlignedFloats(size_t count) : m_size((count + kLanes - 1) / kLane
   m_values.reset(static_cast<float*>(memory));
 }
 
+void AlignedFloats::reserve(long count) {
+  if (static_cast<long>(m_size) < count) *this = AlignedFloats(static_cast<size_t>(count));
+}
+
 AlignedFloats::AlignedFloats(const AlignedFloats& other) : AlignedFloats(other.m_size) {
   if (m_size > 0) std::memcpy(data(), other.data(), m_size * sizeof(float));
 }

@@ -27,6 +27,8 @@ class AlignedFloats {
   float* data() { return m_values.get(); }
   const float* data() const { return m_values.get(); }
   size_t size() const { return m_size; }
+  /// Makes room for at least so many; where that takes new memory, all values are zero.
+  void reserve(long count);
 
  private:
   struct Free {

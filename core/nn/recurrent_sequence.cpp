@@ -17,10 +17,6 @@ constexpr long kFramesBetween = 8;   ///< frames of a recurrence between two cal
 constexpr long kRowsOfOwn = 8, kManyRowsOfOwn = 24;
 constexpr size_t kCachedWeights = size_t{1} << 19;  ///< bytes that stay with every member
 
-void grow(AlignedFloats& memory, long count) {
-  if (static_cast<long>(memory.size()) < count) memory = AlignedFloats(static_cast<size_t>(count));
-}
-
 /// Boundaries of the members' sequences, with about as many frames for each.
 std::vector<long> sharesByFrames(const FrameRows& frames, int members) {
   const long sequences = frames.first[1];
@@ -94,9 +90,9 @@ Inputs RecurrentStack::forward(const FrameRows& frames, std::span<const Inputs> 
                                const std::function<void()>& between) const {
   const long rows = frames.rows(), width = columns();
   const bool recurrent = m_shape.cell != Cell::Feedforward;
-  if (recurrent) grow(work.gates, rows * width);
-  grow(work.odd, rows * m_hiddenStride);
-  grow(work.even, rows * m_hiddenStride);
+  if (recurrent) work.gates.reserve(rows * width);
+  work.odd.reserve(rows * m_hiddenStride);
+  work.even.reserve(rows * m_hiddenStride);
   InputRuns runs;
   for (const Inputs& run : inputs) runs.add(run);
   AlignedFloats* hidden = &work.even;

@@ -34,13 +34,6 @@ class BaseDensity {
   double m_df, m_channels, m_constant = 0.0;
 };
 
-/// Room for a piece's rows.
-nn::AlignedFloats& grown(nn::AlignedFloats& memory, long count) {
-  if (static_cast<long>(memory.size()) < count)
-    memory = nn::AlignedFloats(static_cast<size_t>(count));
-  return memory;
-}
-
 }  // namespace
 
 /// One call of observeMany. Sequences are in order of falling length, so that those that still go
@@ -121,9 +114,9 @@ EngineModel::Observation::Observation(const EngineModel& model, std::span<Rollou
 void EngineModel::Observation::gather(const nn::FrameRows& frames, long begin) {
   const long d = m_model.m_config.poseDim, c = m_model.m_config.controlDim, rows = frames.rows(),
              history = m_model.historyWidth(), control = m_model.controlWidth();
-  grown(m_history, rows * history);
-  grown(m_control, rows * control);
-  grown(m_poses, rows * d);
+  m_history.reserve(rows * history);
+  m_control.reserve(rows * control);
+  m_poses.reserve(rows * d);
   for (long t = 0; t < frames.frames(); ++t)
     for (long row = frames.first[static_cast<size_t>(t)];
          row < frames.first[static_cast<size_t>(t) + 1]; ++row) {
@@ -139,8 +132,8 @@ void EngineModel::Observation::gather(const nn::FrameRows& frames, long begin) {
 void EngineModel::Observation::seeBase(long rows) {
   const long d = m_model.m_config.poseDim, passed = m_model.m_config.passedChannels(),
              features = m_model.featureWidth();
-  grown(m_features, rows * features);
-  grown(m_innovation, rows * d);
+  m_features.reserve(rows * features);
+  m_innovation.reserve(rows * d);
   m_baseLogDet.resize(static_cast<size_t>(rows));
   const auto seen =
       m_model.m_base->foresee(rows, m_history.data(), m_model.historyWidth(), m_control.data(),
@@ -182,7 +175,7 @@ void EngineModel::Observation::piece(long begin, long count, const std::function
   gather(frames, begin);
   between();
   if (m_model.m_base) seeBase(rows);
-  grown(m_sequences.values, rows * stride);
+  m_sequences.values.reserve(rows * stride);
   const float* data = m_model.m_base ? m_innovation.data() : m_poses.data();
   for (long row = 0; row < rows; ++row)
     std::copy(data + row * d + passed, data + (row + 1) * d,

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "laws/engine_support.h"
 #include <gtest/gtest.h>
 
 #include "base/random.h"
@@ -84,10 +85,6 @@ std::vector<uint32_t> samplesWith(uint32_t count, size_t place) {
 }
 
 /// Poses that the model itself made, and a control.
-struct Sequence {
-  Matrix poses, controls;
-};
-
 std::vector<Sequence> sequencesOf(const MotionModel& model, const std::vector<uint32_t>& samples) {
   const ModelInfo& info = model.info();
   const auto frames = rollout(model, samples);
@@ -103,17 +100,6 @@ std::vector<Sequence> sequencesOf(const MotionModel& model, const std::vector<ui
     out.push_back(std::move(s));
   }
   return out;
-}
-
-std::vector<SequenceScore> scoresOf(const MotionModel& model,
-                                    const std::vector<Sequence>& sequences) {
-  std::vector<RolloutState> states;
-  std::vector<ObservedSequence> observed;
-  for (const Sequence& s : sequences) {
-    states.push_back(model.start(1, {}));
-    observed.push_back({&s.poses, &s.controls});
-  }
-  return model.observeMany(states, observed, [] {});
 }
 
 /// Sets the threads and puts one per core back.

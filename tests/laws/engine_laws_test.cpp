@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "laws/engine_support.h"
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -85,24 +86,9 @@ std::vector<Matrix> rollout(const MotionModel& model, const std::vector<uint32_t
   return out;
 }
 
-struct Sequence {
-  Matrix poses, controls;
-};
-
 Sequence sequenceOf(const ModelInfo& info, uint32_t sample, long frames) {
   return {noise(sample, 1, frames, info.poseDim),
           noise(sample, 2, frames + info.context + info.lookahead, info.controlDim)};
-}
-
-std::vector<SequenceScore> scoresOf(const MotionModel& model,
-                                    const std::vector<Sequence>& sequences) {
-  std::vector<RolloutState> states;
-  std::vector<ObservedSequence> observed;
-  for (const Sequence& s : sequences) {
-    states.push_back(model.start(1, {}));
-    observed.push_back({&s.poses, &s.controls});
-  }
-  return model.observeMany(states, observed, [] {});
 }
 
 void expectNear(const Matrix& a, const Matrix& b, double tolerance, const std::string& what) {

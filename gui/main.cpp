@@ -60,7 +60,7 @@ void answerQuestions(int argc, char** argv) {
 }
 
 int run(int argc, char** argv) {
-  SceneView::setDefaultFormat();
+  SceneView::prepareApplication();
   Application application(argc, argv);
   QCommandLineParser parser;
   describe(parser);

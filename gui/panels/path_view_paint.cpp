@@ -8,6 +8,9 @@
 namespace marey::gui {
 namespace {
 
+/// From the legend's edge to its words, pixels: room for a stroke of the line's colour.
+constexpr int kLegendIndent = 26;
+
 /// Of grid lines and the scale bar: 1, 2 or 5 times a power of ten.
 double niceStep(double atLeast) {
   const double power = std::pow(10.0, std::floor(std::log10(atLeast)));
@@ -163,20 +166,28 @@ void PathView::paintLegend(QPainter& painter, const Inks& inks) const {
   if (has(Strain::Unseen)) lines.push_back({Strain::Unseen, tr("beyond %1").arg(data)});
   if (lines.empty()) return;
   const QFontMetrics metrics = painter.fontMetrics();
-  int wide = 0;
-  for (const Line& line : lines) wide = std::max(wide, metrics.horizontalAdvance(line.text));
-  const int step = metrics.height() + 2;
-  const QRectF box(kMargin, kMargin, wide + 26 + 2 * kSpacing,
-                   step * static_cast<double>(lines.size()) + kSpacing);
+  const int room = std::max(60, width() - 2 * (kMargin + kSpacing) - kLegendIndent);
+  // A narrow dock breaks the words instead of cutting them off.
+  std::vector<QRect> texts;
+  QSize whole(0, 0);
+  for (const Line& line : lines) {
+    texts.push_back(metrics.boundingRect(QRect(0, 0, room, 1000), Qt::TextWordWrap, line.text));
+    whole = {std::max(whole.width(), texts.back().width()), whole.height() + texts.back().height()};
+  }
+  const QRectF box(kMargin, kMargin, whole.width() + kLegendIndent + 2 * kSpacing,
+                   whole.height() + kSpacing);
   drawPlate(painter, box, inks.background);
+  double top = box.top() + kSpacing / 2.0;
   for (size_t i = 0; i < lines.size(); ++i) {
-    const double y = box.top() + kSpacing / 2.0 + static_cast<double>(i) * step;
+    const double middle = top + metrics.height() / 2.0;
     painter.setPen(QPen(strainInk(lines[i].strain, inks), 4));
-    painter.drawLine(QPointF(box.left() + kSpacing, y + step / 2.0),
-                     QPointF(box.left() + kSpacing + 18, y + step / 2.0));
+    painter.drawLine(QPointF(box.left() + kSpacing, middle),
+                     QPointF(box.left() + kSpacing + 18, middle));
     painter.setPen(inks.text);
-    painter.drawText(QRectF(box.left() + kSpacing + 26, y, wide + 4, step), Qt::AlignVCenter,
-                     lines[i].text);
+    painter.drawText(
+        QRectF(box.left() + kSpacing + kLegendIndent, top, texts[i].width() + 2, texts[i].height()),
+        Qt::TextWordWrap, lines[i].text);
+    top += texts[i].height();
   }
 }
 

@@ -1,5 +1,6 @@
 #include "panels/scene_view.h"
 
+#include <QCoreApplication>
 #include <QSurfaceFormat>
 #include <algorithm>
 
@@ -28,6 +29,9 @@ SceneView::SceneView(Workspace& workspace, QWidget* parent)
   setObjectName(QStringLiteral("sceneView"));
   setMinimumSize(240, 180);
   setMouseTracking(true);
+  // With a native window of its own a new frame composes this view alone, not the whole window.
+  setAttribute(Qt::WA_DontCreateNativeAncestors);
+  setAttribute(Qt::WA_NativeWindow);
   setFocusPolicy(Qt::StrongFocus);
   setAccessibleName(tr("3D view of the motions"));
   vtkNew<vtkGenericOpenGLRenderWindow> window;
@@ -40,9 +44,6 @@ SceneView::SceneView(Workspace& workspace, QWidget* parent)
   m_overlay->setContent(&m_content);
   m_overlay->setTool(
       [this](QPainter& painter, const Inks& inks) { m_tool.paint(painter, size(), inks); });
-  m_redraw.setSingleShot(true);
-  m_redraw.setInterval(0);
-  connect(&m_redraw, &QTimer::timeout, this, &SceneView::flush);
   m_hover.setSingleShot(true);
   m_hover.setInterval(kHoverMs);
   connect(&m_hover, &QTimer::timeout, this, &SceneView::updateHover);
@@ -50,7 +51,8 @@ SceneView::SceneView(Workspace& workspace, QWidget* parent)
   schedule();
 }
 
-void SceneView::setDefaultFormat() {
+void SceneView::prepareApplication() {
+  QCoreApplication::setAttribute(Qt::AA_DontCreateNativeWidgetSiblings);
   QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
   format.setSamples(0);
   // Lines wider than a pixel are deprecated, and crowds are drawn with them.
@@ -89,11 +91,20 @@ void SceneView::changeOptions() {
 }
 
 void SceneView::schedule() {
-  if (!m_redraw.isActive()) m_redraw.start();
+  if (m_redrawPosted) return;
+  m_redrawPosted = true;
+  // Posted rather than timed: it comes before the window's own painting, which would otherwise
+  // compose the whole window once with the old scene and once more with the new one.
+  QMetaObject::invokeMethod(
+      this,
+      [this] {
+        if (m_redrawPosted) flush();
+      },
+      Qt::QueuedConnection);
 }
 
 void SceneView::flush() {
-  m_redraw.stop();
+  m_redrawPosted = false;
   // Nothing is worked out for a view that is not seen; showing it comes back here.
   if (!isVisible()) return;
   if (m_motionsChanged) updateMotions();

@@ -20,8 +20,8 @@ class SceneView : public QVTKOpenGLNativeWidget {
   Q_OBJECT
  public:
   SceneView(Workspace& workspace, QWidget* parent);
-  /// Before the application starts: the OpenGL that every view asks for.
-  static void setDefaultFormat();
+  /// Before the application starts: the OpenGL and the windows that every view asks for.
+  static void prepareApplication();
   ~SceneView() override;
 
   const SceneSettings& settings() const { return m_settings; }
@@ -80,7 +80,8 @@ class SceneView : public QVTKOpenGLNativeWidget {
   MotionColouring* m_colouring = nullptr;
   ContactTolerance& m_contacts;
   SceneOverlay* m_overlay = nullptr;
-  QTimer m_redraw, m_hover;
+  QTimer m_hover;
+  bool m_redrawPosted = false;
   bool m_motionsChanged = true, m_optionsChanged = true;
   bool m_cameraMoved = false;  ///< by the user, who then keeps it
   size_t m_fittedMotions = 0;

@@ -8,7 +8,7 @@
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   if (::testing::GTEST_FLAG(list_tests)) return RUN_ALL_TESTS();
-  marey::gui::SceneView::setDefaultFormat();
+  marey::gui::SceneView::prepareApplication();
   marey::gui::Application application(argc, argv);
   QApplication::setOrganizationName(QStringLiteral("Marey"));
   QApplication::setApplicationName(QStringLiteral("Marey"));

@@ -12,6 +12,10 @@
 #include "gui/gui_support.h"
 #include "panels/path_view.h"
 #include "panels/scene_view.h"
+#include <vtkCallbackCommand.h>
+#include <vtkCommand.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkNew.h>
 
 namespace marey::gui {
 namespace {
@@ -71,16 +75,29 @@ class RealDataWindow : public WindowTest {
     EXPECT_NE(m_workspace->experiment().paths.front().wayPoints.back(), last);
   }
 
-  /// Wall time of each of some new times, drawn.
+  /// Wall time from each of some new times until the screen has the scene of that time: what the
+  /// scene draws first after it, and then the window's swap.
   std::vector<double> scrub() {
+    auto* scene = child<SceneView>(*m_window, "sceneView");
+    bool drawn = false, shown = false;
+    vtkNew<vtkCallbackCommand> watch;
+    watch->SetClientData(&drawn);
+    watch->SetCallback([](vtkObject* /*window*/, unsigned long /*event*/, void* flag,
+                          void* /*data*/) { *static_cast<bool*>(flag) = true; });
+    const auto observer = scene->renderWindow()->AddObserver(vtkCommand::EndEvent, watch);
+    const auto swaps =
+        QObject::connect(scene, &QOpenGLWidget::frameSwapped, [&] { shown = shown || drawn; });
     std::vector<double> ms;
-    for (int i = 1; i <= 20; ++i) {
+    for (int i = 1; i <= 40; ++i) {
+      settle(20);
+      drawn = shown = false;
       const double begin = nowMs();
-      m_workspace->setTime(0.25 * i);
-      child<SceneView>(*m_window, "sceneView")->repaint();
-      QApplication::processEvents();
+      m_workspace->setTime(0.125 * i);
+      EXPECT_TRUE(waitUntil([&] { return shown; }, 10.0));
       ms.push_back(nowMs() - begin);
     }
+    QObject::disconnect(swaps);
+    scene->renderWindow()->RemoveObserver(observer);
     return ms;
   }
 

@@ -55,7 +55,8 @@ MainWindow::MainWindow(Workspace& workspace, const std::vector<PanelSpec>& panel
                ? Theme::Dark
                : Theme::Light);
   restoreGeometry(settings.value(QStringLiteral("geometry")).toByteArray());
-  m_docks->restoreState(settings.value(QStringLiteral("layout")).toByteArray());
+  const QByteArray layout = settings.value(QStringLiteral("layout")).toByteArray();
+  if (!layout.isEmpty()) m_docks->restoreState(layout);
 }
 
 MainWindow::~MainWindow() = default;

@@ -67,6 +67,13 @@ Colour withOpacity(Colour colour, double opacity) {
   return colour;
 }
 
+Colour onDark(const Colour& colour) {
+  constexpr double kNearBlack = 0.25, kNeutral = 0.1, kLifted = 0.82;
+  const auto [least, most] = std::minmax({colour.r, colour.g, colour.b});
+  if (most > kNearBlack || most - least > kNeutral) return colour;
+  return withOpacity(mix(colour, grey(1.0), kLifted), colour.a);
+}
+
 std::string hexOf(const Colour& colour) {
   const auto byte = [](double v) { return static_cast<int>(std::lround(v * 255.0)); };
   return fmt::format("#{:02x}{:02x}{:02x}", byte(colour.r), byte(colour.g), byte(colour.b));

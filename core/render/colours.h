@@ -29,6 +29,9 @@ Colour grey(double lightness);
 /// `amount` 0 gives `a`, 1 gives `b`; opacity is mixed as well.
 Colour mix(const Colour& a, const Colour& b, double amount);
 Colour withOpacity(Colour colour, double opacity);
+/// As drawn on a dark background, where near-black, that of natural motion, cannot be told from it
+/// and becomes light. Colours stay what they are: a scale's dark end means something.
+Colour onDark(const Colour& colour);
 /// "#rrggbb", opacity left out.
 std::string hexOf(const Colour& colour);
 

@@ -75,6 +75,19 @@ Image::Image(int w, int h, const Colour& fill) : width(w), height(h) {
   for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = rgba[i & 3U];
 }
 
+void layOver(Image& below, const Image& above) {
+  if (below.width != above.width || below.height != above.height)
+    throw NumericError(fmt::format("a picture of {} x {} laid over one of {} x {}", above.width,
+                                   above.height, below.width, below.height));
+  for (size_t i = 0; i < below.pixels.size(); i += 4) {
+    const int alpha = above.pixels[i + 3];
+    if (alpha == 0) continue;
+    for (size_t c = i; c < i + 3; ++c)
+      below.pixels[c] = static_cast<uint8_t>(
+          (above.pixels[c] * alpha + below.pixels[c] * (255 - alpha) + 127) / 255);
+  }
+}
+
 std::string encodePng(const Image& image, const Recipe& recipe) {
   if (image.width <= 0 || image.height <= 0) throw NumericError("an image without pixels");
   std::string bytes;

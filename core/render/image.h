@@ -25,6 +25,9 @@ struct Image {
   }
 };
 
+/// Lays a picture of the same size over an opaque one. Throws NumericError for another size.
+void layOver(Image& below, const Image& above);
+
 /// The bytes of a PNG file; the recipe is its text chunk "marey" (JSON).
 /// Throws NumericError for an image without pixels.
 std::string encodePng(const Image& image, const Recipe& recipe = {});

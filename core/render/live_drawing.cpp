@@ -16,10 +16,6 @@ constexpr double trailStepS = 1.0 / 30.0;
 bool isSolid(double opacity) {
   return opacity > 0.995;
 }
-
-double brightness(const Colour& c) {
-  return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b;
-}
 }  // namespace
 
 bool LiveScene::Internals::useLines() const {
@@ -35,8 +31,7 @@ Colour LiveScene::Internals::shownColour(size_t motion, double timeS) const {
     colour =
         m.frameColours[static_cast<size_t>(std::clamp(std::round(timeS * m.clip->fps), 0.0, last))];
   }
-  // Near-black cannot be told from a dark background.
-  if (options.dark && brightness(colour) < 0.25) colour = mix(colour, grey(1.0), 0.82);
+  if (options.dark) colour = onDark(colour);
   colour.a = m.highlighted ? 1.0 : std::clamp(m.opacity, 0.0, 1.0);
   if (m.highlighted || !someHighlighted) return colour;
   const double kept = isSolid(colour.a) ? 1.0 : 0.45 * colour.a;

@@ -25,6 +25,13 @@ LiveScene sceneOf(const LiveShot& shot, int width, int height) {
   return scene;
 }
 
+Image taken(LivePicture& picture, const LiveScene& scene, const Image& over, int width,
+            int height) {
+  Image out = picture.take(scene, width, height);
+  if (!over.pixels.empty()) layOver(out, over);
+  return out;
+}
+
 const char* nameOf(LiveView view) {
   switch (view) {
     case LiveView::ThreeQuarter:
@@ -84,7 +91,8 @@ int frameCountOf(const LiveShot& shot, double fps) {
 Image drawLive(const LiveShot& shot, double timeS, int width, int height) {
   LiveScene scene = sceneOf(shot, width, height);
   scene.setTime(timeS);
-  return LivePicture().take(scene, width, height);
+  LivePicture picture;
+  return taken(picture, scene, shot.over, width, height);
 }
 
 int writeLiveVideo(const std::filesystem::path& path, const LiveShot& shot,
@@ -96,7 +104,7 @@ int writeLiveVideo(const std::filesystem::path& path, const LiveShot& shot,
   for (int k = 0; k < frames; ++k) {
     progress.throwIfCancelled();
     scene.setTime(shot.beginS + k / format.fps);
-    writer.add(picture.take(scene, format.width, format.height));
+    writer.add(taken(picture, scene, shot.over, format.width, format.height));
     progress.report((k + 1.0) / frames, fmt::format("frame {} of {}", k + 1, frames));
   }
   writer.finish();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "render/image.h"
 #include "render/live_scene.h"
 #include "render/video.h"
 
@@ -21,6 +22,7 @@ struct LiveShot {
   bool follow = false;
   double beginS = 0.0;
   std::optional<double> endS;  ///< the last moment shown; none: the end of the longest motion
+  Image over;  ///< laid over every picture, which has its size: a legend; empty: nothing
 };
 
 /// Frames that writeLiveVideo makes of it.

@@ -333,6 +333,7 @@ void saveScenePicture(Workspace& workspace, QWidget* parent) {
                         .width = static_cast<int>(ratio * view->width()),
                         .height = static_cast<int>(ratio * view->height())};
   copyScene(*view, request, false);
+  addLegend(*view, request);
   workspace.jobs().start(
       Lane::Exports, QObject::tr("Picture of the 3D view"), [request, path](Progress&) {
         render::writePng(

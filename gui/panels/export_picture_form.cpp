@@ -3,7 +3,10 @@
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <algorithm>
 #include <set>
+
+#include "panels/scene_legend.h"
 
 namespace marey::gui {
 namespace {
@@ -39,6 +42,7 @@ ExportPictureForm::ExportPictureForm(SceneView* scene, QWidget* parent)
       m_orthographic(new QCheckBox(tr("Orthographic"), this)),
       m_camera(new QComboBox(this)),
       m_dark(new QCheckBox(tr("Dark background"), this)),
+      m_legend(new QCheckBox(tr("Legend"), this)),
       m_trail(new QCheckBox(tr("Earlier figures stay, lighter"), this)),
       m_strobe(new QDoubleSpinBox(this)),
       m_path(new QCheckBox(tr("Path that was asked for"), this)) {
@@ -46,8 +50,8 @@ ExportPictureForm::ExportPictureForm(SceneView* scene, QWidget* parent)
       {m_look, "exportLook"},     {m_fps, "exportFps"},
       {m_view, "exportView"},     {m_orthographic, "exportOrthographic"},
       {m_camera, "exportCamera"}, {m_dark, "exportDark"},
-      {m_trail, "exportTrail"},   {m_strobe, "exportStrobe"},
-      {m_path, "exportPath"}};
+      {m_legend, "exportLegend"}, {m_trail, "exportTrail"},
+      {m_strobe, "exportStrobe"}, {m_path, "exportPath"}};
   for (const auto& [widget, name] : names) widget->setObjectName(QLatin1String(name));
   if (scene != nullptr) m_look->addItem(tr("As in the 3D view"), true);
   m_look->addItem(tr("Figure with exposures, as marey render draws it"), false);
@@ -59,6 +63,7 @@ ExportPictureForm::ExportPictureForm(SceneView* scene, QWidget* parent)
     m_camera->setCurrentIndex(scene->scene().follow() ? 1 : 0);
     m_dark->setChecked(scene->scene().options().dark);
   }
+  m_legend->setChecked(true);
   m_strobe->setRange(0.05, 60.0);
   m_strobe->setSingleStep(0.1);
   m_strobe->setValue(0.4);
@@ -73,6 +78,7 @@ ExportPictureForm::ExportPictureForm(SceneView* scene, QWidget* parent)
   form->addRow({}, m_orthographic);
   form->addRow(tr("Camera"), m_camera);
   form->addRow({}, m_dark);
+  form->addRow({}, m_legend);
   form->addRow(tr("Trail"), m_trail);
   form->addRow(tr("Exposures"), m_strobe);
   form->addRow(tr("On the floor"), m_path);
@@ -143,6 +149,7 @@ void ExportPictureForm::refresh() {
   // The view that is seen has its own projection.
   m_orthographic->setEnabled(!live || m_view->currentData().toInt() != kAsSeen);
   m_dark->setEnabled(live);
+  m_legend->setEnabled(live);
   m_trail->setEnabled(!live && video);
   m_strobe->setEnabled(!live && (!video || m_trail->isChecked()));
   m_path->setEnabled(!live);
@@ -174,6 +181,7 @@ void ExportPictureForm::fillShot(ExportRequest& request, bool apart) const {
     shot.view = static_cast<render::LiveView>(view);
   shot.orthographic = request.orthographic;
   shot.follow = request.follow;
+  if (m_legend->isChecked()) addLegend(*m_scene, request);
 }
 
 void copyScene(SceneView& view, ExportRequest& request, bool apart) {
@@ -198,6 +206,28 @@ void copyScene(SceneView& view, ExportRequest& request, bool apart) {
   request.stillS = scene.time();
   request.shotSettings = {{"colour_by", nameOf(view.settings().colourBy)}};
   request.shot = std::move(shot);
+}
+
+void addLegend(const SceneView& view, ExportRequest& request) {
+  SceneLegend legend = view.content().legend;
+  legend.groups.clear();
+  std::vector<int> counts;
+  std::vector<const ExportItem*> firsts;
+  for (const ExportItem& item : request.items) {
+    const auto known = std::find_if(firsts.begin(), firsts.end(),
+                                    [&](const auto* f) { return f->group == item.group; });
+    const auto index = static_cast<size_t>(known - firsts.begin());
+    if (known == firsts.end()) {
+      firsts.push_back(&item);
+      counts.push_back(0);
+    }
+    ++counts[index];
+  }
+  for (size_t i = 0; i < firsts.size(); ++i)
+    legend.groups.push_back({firsts[i]->colour, groupLabel(firsts[i]->group, counts[i])});
+  request.shotSettings["legend"] = true;
+  request.shot->over =
+      legendPicture(legend, request.width, request.height, request.shot->options.dark);
 }
 
 }  // namespace marey::gui

@@ -16,6 +16,8 @@ namespace marey::gui {
 /// Copies what a view shows now into a request, whose items become those that are shown.
 /// `apart`: the motions are no part of what else is shown, so none of them stands out.
 void copyScene(SceneView& view, ExportRequest& request, bool apart);
+/// Lays the view's legend, with the request's motions, over the request's pictures.
+void addLegend(const SceneView& view, ExportRequest& request);
 
 class ExportPictureForm : public QGroupBox {
  public:
@@ -44,6 +46,7 @@ class ExportPictureForm : public QGroupBox {
   QCheckBox* m_orthographic;
   QComboBox* m_camera;
   QCheckBox* m_dark;
+  QCheckBox* m_legend;
   QCheckBox* m_trail;
   QDoubleSpinBox* m_strobe;
   QCheckBox* m_path;

@@ -9,8 +9,7 @@ QColor toQColor(const render::Colour& colour) {
 }
 
 QColor shownColour(const render::Colour& colour, bool dark) {
-  const QColor out = toQColor(colour);
-  return dark && out.lightness() < 80 ? QColor(0xd8, 0xd8, 0xd8, out.alpha()) : out;
+  return toQColor(dark ? render::onDark(colour) : colour);
 }
 
 Inks inksOf(const QPalette& palette) {

@@ -46,13 +46,14 @@ void colourByValue(const Workspace& workspace, const SceneSettings& settings,
     natural = natural || group.natural();
   }
   const MotionColours& colours = colouring.of(sources, settings.colourBy, modelRate(workspace));
-  content.scale = colours.scale;
-  content.scaleTitle = likelihood ? tr("Log-likelihood (nats per frame)") : tr("Root speed (m/s)");
+  content.legend.scale = colours.scale;
+  content.legend.scaleTitle =
+      likelihood ? tr("Log-likelihood (nats per frame)") : tr("Root speed (m/s)");
   QStringList notes;
   if (likelihood && natural && !system.empty())
     notes << tr("Natural motion under %1").arg(QString::fromStdString(system));
   if (missing) notes << tr("Grey: not scored yet");
-  content.note = notes.join(QStringLiteral(" · "));
+  content.legend.note = notes.join(QStringLiteral(" · "));
   for (size_t i = 0; i < sources.size(); ++i) {
     const auto known = colours.frames.find(sources[i].clip.get());
     if (known != colours.frames.end())
@@ -110,6 +111,10 @@ std::string naturalSystem(const Workspace& workspace, const SceneSettings& setti
   return systems.empty() ? std::string() : systems.front().name;
 }
 
+QString groupLabel(const std::string& group, int shown) {
+  return QStringLiteral("%1 (%2)").arg(QString::fromStdString(group)).arg(shown);
+}
+
 QString motionLabel(const MotionGroup& group, int index) {
   const Motion& motion = group.motions.at(static_cast<size_t>(index));
   if (group.natural() && motion.clip && !motion.clip->name.empty())
@@ -134,15 +139,15 @@ SceneContent sceneContent(const Workspace& workspace, const SceneSettings& setti
   }
   for (const MotionGroup& group : workspace.groups())
     if (const int count = counts[group.id]; count > 0)
-      out.legend.push_back(
-          {group.colour(),
-           QStringLiteral("%1 (%2)").arg(QString::fromStdString(group.name)).arg(count)});
+      out.legend.groups.push_back({group.colour(), groupLabel(group.name, count)});
   if (settings.colourBy == ColourBy::Sample) {
     colourBySample(workspace, out);
-    out.note = tr("Colour: number of the sample, from dark to light");
+    out.legend.note = tr("Colour: number of the sample, from dark to light");
   } else if (settings.colourBy != ColourBy::System) {
     colourByValue(workspace, settings, colouring, out);
   }
+  out.legend.groupColours = std::any_of(out.motions.begin(), out.motions.end(),
+                                        [](const auto& m) { return m.frameColours.empty(); });
   markJoints(workspace, settings.trails, out);
   return out;
 }

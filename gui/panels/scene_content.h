@@ -37,19 +37,27 @@ struct LegendLine {
   QString text;
 };
 
+/// What the colours of a picture mean.
+struct SceneLegend {
+  std::vector<LegendLine> groups;
+  bool groupColours = true;         ///< bodies have the colours of their groups
+  std::optional<ScaleRange> scale;  ///< of a colour bar
+  QString scaleTitle;               ///< with its unit
+  QString note;                     ///< how else, or why something is not coloured
+};
+
 struct SceneContent {
   std::vector<render::LiveMotion> motions;
   std::vector<MotionId> ids;  ///< of the motions, in their order
-  std::vector<LegendLine> legend;
-  std::optional<ScaleRange> scale;  ///< of a colour bar
-  QString scaleTitle;               ///< with its unit
-  QString note;                     ///< why something is not coloured; empty: all is
+  SceneLegend legend;
 };
 
 SceneContent sceneContent(const Workspace& workspace, const SceneSettings& settings,
                           MotionColouring& colouring);
 /// The system under which natural motion is scored; empty where the document has none.
 std::string naturalSystem(const Workspace& workspace, const SceneSettings& settings);
+/// A line of the legend: a set and how many of its motions are shown.
+QString groupLabel(const std::string& group, int shown);
 /// Title, unit and meaning for people; `index` is its number in the group.
 QString motionLabel(const MotionGroup& group, int index);
 

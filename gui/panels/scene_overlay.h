@@ -29,8 +29,6 @@ class SceneOverlay : public QWidget {
   void paintEvent(QPaintEvent* event) override;
 
  private:
-  void paintLegend(QPainter& painter, const Inks& inks) const;
-  void paintScale(QPainter& painter, const Inks& inks) const;
   void paintNote(QPainter& painter, const Inks& inks, const QString& text,
                  QPointF bottomLeft) const;
 

@@ -1,7 +1,6 @@
 #include "shell/theme.h"
 
 #include <QFontDatabase>
-#include <QPalette>
 #include <QStyleFactory>
 
 namespace marey::gui {
@@ -76,10 +75,14 @@ QString sheetOf(const Inks& k) {
 
 }  // namespace
 
+QPalette paletteOf(Theme theme) {
+  return paletteOf(inksOf(theme));
+}
+
 void applyTheme(QApplication& application, Theme theme) {
   const Inks inks = inksOf(theme);
   application.setStyle(QStyleFactory::create(QStringLiteral("Fusion")));
-  application.setPalette(paletteOf(inks));
+  application.setPalette(paletteOf(theme));
   application.setStyleSheet(sheetOf(inks));
 }
 

@@ -125,6 +125,30 @@ TEST_F(Export, ClipsAreThoseOfTheCommandLineForTheSameDocument) {
   }
 }
 
+TEST_F(Export, APictureOfTheViewHasItsLegendUnlessToldOtherwise) {
+  choose(ExportFormat::Still);
+  child<QSpinBox>(*m_dialog, "exportWidth")->setValue(640);
+  child<QSpinBox>(*m_dialog, "exportHeight")->setValue(360);
+  press();
+  ASSERT_EQ(written().size(), 1U);
+  const fs::path file = m_out / written().front();
+  const render::Image with = render::readPng(file);
+  EXPECT_NE(render::pngRecipe(readFile(file), file).find("legend"), std::string::npos);
+  child<QCheckBox>(*m_dialog, "exportLegend")->setChecked(false);
+  EXPECT_FALSE(pressAndAnswer(QMessageBox::Yes).isEmpty());
+  const render::Image without = render::readPng(file);
+  ASSERT_EQ(with.pixels.size(), without.pixels.size());
+  int differing = 0;
+  for (int y = 0; y < with.height; ++y)
+    for (int x = 0; x < with.width; ++x)
+      if (!std::equal(with.at(x, y), with.at(x, y) + 3, without.at(x, y))) {
+        ++differing;
+        ASSERT_LT(x, with.width / 2) << "no colour bar where bodies have their group's colour";
+        ASSERT_LT(y, with.height / 3);
+      }
+  EXPECT_GT(differing, 500);
+}
+
 TEST_F(Export, RotationsAreFittedAsByConvertAndTheResidualIsShown) {
   choose(ExportFormat::Npz);
   press();

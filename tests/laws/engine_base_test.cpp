@@ -125,6 +125,34 @@ TEST_P(Bases, SamplesAsThePlainPathDoes) {
       << "samples are all the same";
 }
 
+/// From the plain path's past, so that a choice in which the two once differ does not go on: every
+/// frame alone has to be the same.
+TEST_P(Bases, MakesEveryOfFiftyFramesFromThePlainPathsPast) {
+  const auto fast = modelOf(GetParam(), Execution::Engine),
+             plain = modelOf(GetParam(), Execution::Reference);
+  const ModelInfo& info = plain->info();
+  const long window = info.context + 1L + info.lookahead;
+  for (const uint32_t sample : {1u, 2u, 3u}) {
+    RolloutState led = fast->start(1, {}), leading = plain->start(1, {});
+    for (uint32_t t = 0; t < 50; ++t) {
+      Matrix control(window, info.controlDim), latent(1, info.poseDim);
+      fillControl(info, sample, t, {control.data(), static_cast<size_t>(control.size())});
+      fillNormal({.seed = 4, .sample = sample, .frame = t, .stage = RandomStage::Test},
+                 {latent.data(), static_cast<size_t>(latent.size())});
+      const Matrix row = Eigen::Map<const Matrix>(control.data(), 1, control.size());
+      RolloutState fork = led, leadingFork = leading;
+      const Matrix wanted = plain->sampleFrame(leadingFork, row, latent);
+      ASSERT_TRUE(wanted.allFinite()) << "frame " << t;
+      const Matrix got = fast->sampleFrame(fork, row, latent);
+      EXPECT_LT((got - wanted).cwiseAbs().maxCoeff(),
+                1e-5f * std::max(1.f, wanted.cwiseAbs().maxCoeff()))
+          << "sample " << sample << ", frame " << t;
+      fast->observe(led, wanted, control);
+      plain->observe(leading, wanted, control);
+    }
+  }
+}
+
 TEST_P(Bases, ScoresAsThePlainPathDoes) {
   const auto fast = modelOf(GetParam(), Execution::Engine),
              plain = modelOf(GetParam(), Execution::Reference);

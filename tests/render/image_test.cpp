@@ -93,5 +93,14 @@ TEST(Ssim, OtherSizesAreRefused) {
   EXPECT_THROW(ssim(Image(10, 20), Image(10, 20)), InputError);
 }
 
+TEST(Colours, OnlyNearBlackIsLiftedFromADarkBackground) {
+  EXPECT_GT(onDark(naturalColour()).r, 0.8);
+  EXPECT_EQ(onDark(withOpacity(naturalColour(), 0.3)).a, 0.3);
+  for (const double share : {0.0, 0.5, 1.0})
+    EXPECT_EQ(onDark(scaleColour(share)), scaleColour(share))
+        << "it would no longer mean its value";
+  for (int system = 0; system < 12; ++system) EXPECT_EQ(onDark(colourOf(system)), colourOf(system));
+}
+
 }  // namespace
 }  // namespace marey::render

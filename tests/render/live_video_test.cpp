@@ -49,6 +49,22 @@ TEST_F(LiveVideo, ShowsWhatTheSceneShowsFromWhereItIsSeen) {
             LivePicture().take(scene, width, height).pixels);
 }
 
+TEST_F(LiveVideo, LaysALegendOverEveryPicture) {
+  LiveShot shot = tinyShot();
+  const Image bare = drawLive(shot, 0.5, width, height);
+  shot.over = Image(width, height, {0, 0, 0, 0});
+  std::fill_n(shot.over.at(3, 2), 4, uint8_t{255});     // white, opaque
+  std::fill_n(shot.over.at(4, 2) + 3, 1, uint8_t{51});  // black, a fifth
+  const Image drawn = drawLive(shot, 0.5, width, height);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(drawn.at(3, 2)[c], 255);
+    EXPECT_NEAR(drawn.at(4, 2)[c], 0.8 * bare.at(4, 2)[c], 1.0);
+    EXPECT_EQ(drawn.at(5, 2)[c], bare.at(5, 2)[c]);
+  }
+  shot.over = Image(width, height + 1);
+  EXPECT_THROW(drawLive(shot, 0.5, width, height), NumericError);
+}
+
 TEST_F(LiveVideo, AFollowingCameraStandsWhereItStoodInTheScene) {
   LiveShot shot = tinyShot();
   shot.follow = true;

@@ -151,7 +151,7 @@ class LibraryPanel : public QWidget {
       pin->setCheckable(true);
       pin->setChecked(group.pinned);
     }
-    menu.addAction(tr("Remove these motions"), this, [this, id] { m_workspace.removeGroup(id); });
+    menu.addAction(tr("Remove these motions"), this, [this, id] { m_workspace.setAside(id); });
   }
 
   Workspace& m_workspace;

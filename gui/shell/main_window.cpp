@@ -49,7 +49,9 @@ MainWindow::MainWindow(Workspace& workspace, const std::vector<PanelSpec>& panel
   statusBar()->addPermanentWidget(new JobBar(workspace.jobs(), this));
   connect(&m_workspace, &Workspace::errorReported, this, &MainWindow::showError);
   connect(&m_workspace, &Workspace::documentChanged, this, &MainWindow::refreshTitle);
+  connect(&m_workspace, &Workspace::motionsChanged, this, &MainWindow::refreshBringBack);
   refreshTitle();
+  refreshBringBack();
   const QSettings settings;
   setTheme(settings.value(QStringLiteral("theme")).toString() == QLatin1String("dark")
                ? Theme::Dark
@@ -127,6 +129,14 @@ void MainWindow::refreshTitle() {
   m_redo->setText(history.canRedo() ? tr("Redo %1").arg(QString::fromStdString(
                                           history.label(history.index() + 1)))
                                     : tr("Redo"));
+}
+
+void MainWindow::refreshBringBack() {
+  const auto& aside = m_workspace.aside();
+  m_bringBack->setEnabled(!aside.empty());
+  m_bringBack->setText(aside.empty()
+                           ? tr("Bring back removed motions")
+                           : tr("Bring back “%1”").arg(QString::fromStdString(aside.back().name)));
 }
 
 void MainWindow::showError(const QString& title, const QString& error) {

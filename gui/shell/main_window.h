@@ -64,6 +64,7 @@ class MainWindow : public QMainWindow {
   QAction* add(QMenu* menu, const QString& name, const QString& text, const QKeySequence& keys,
                const std::function<void()>& run);
   void refreshTitle();
+  void refreshBringBack();
   void refreshRecent();
   void open(const QString& file);
   void openDemo();
@@ -88,6 +89,7 @@ class MainWindow : public QMainWindow {
   std::vector<QAction*> m_commands;
   QAction* m_undo = nullptr;
   QAction* m_redo = nullptr;
+  QAction* m_bringBack = nullptr;
   QAction* m_report = nullptr;
   QAction* m_reload = nullptr;
   QMenu* m_recent = nullptr;

@@ -92,6 +92,8 @@ void MainWindow::buildEditMenu() {
   QMenu* menu = menuBar()->addMenu(tr("&Edit"));
   m_undo = add(menu, "undo", tr("Undo"), QKeySequence::Undo, [this] { m_workspace.undo(); });
   m_redo = add(menu, "redo", tr("Redo"), tr("Ctrl+Shift+Z"), [this] { m_workspace.redo(); });
+  m_bringBack = add(menu, "bringBack", tr("Bring back removed motions"), {},
+                    [this] { m_workspace.bringBack(); });
   menu->addSeparator();
   add(menu, "selectNone", tr("Select nothing"), tr("Ctrl+Shift+A"),
       [this] { m_workspace.select({}); });

@@ -114,6 +114,7 @@ void Workspace::open(Experiment experiment, const QString& file) {
   m_file = file;
   m_currentPath = 0;
   m_groups.clear();
+  m_aside.clear();
   m_leftOut.clear();
   m_selection = {};
   m_time = 0.0;

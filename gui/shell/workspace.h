@@ -61,6 +61,11 @@ class Workspace : public QObject {
   void setPinned(int group, bool pinned);
   /// Also ends the drawing of its motions.
   void removeGroup(int group);
+  /// The same, but bringBack() has it again: samples are no part of the document's history.
+  void setAside(int group);
+  /// The last groups that were set aside in this document, the latest at the end.
+  const std::vector<MotionGroup>& aside() const { return m_aside; }
+  void bringBack();
   /// A group that was made elsewhere (a steered motion); returns the id that it gets.
   int addGroup(MotionGroup group);
   /// Other motions in place of a group's; nothing where there is no such group.
@@ -151,7 +156,7 @@ class Workspace : public QObject {
   Experiment m_saved;
   QString m_file;
   int m_currentPath = 0;
-  std::vector<MotionGroup> m_groups;
+  std::vector<MotionGroup> m_groups, m_aside;
   std::map<int, Drawing> m_drawings;                              ///< by group
   std::map<std::string, std::vector<ClipScore>> m_naturalScores;  ///< by ModelCache::stampOf
   std::map<std::string, int> m_scoring;                           ///< jobs, likewise

@@ -105,6 +105,26 @@ void Workspace::removeGroup(int id) {
     tellMotions();
 }
 
+void Workspace::setAside(int id) {
+  constexpr size_t kMost = 10;
+  const MotionGroup* found = group(id);
+  if (found == nullptr) return;
+  if (!found->motions.empty()) {
+    m_aside.push_back(*found);
+    // What was not drawn yet does not come any more.
+    m_aside.back().complete = true;
+    if (m_aside.size() > kMost) m_aside.erase(m_aside.begin());
+  }
+  removeGroup(id);
+}
+
+void Workspace::bringBack() {
+  if (m_aside.empty()) return;
+  MotionGroup group = std::move(m_aside.back());
+  m_aside.pop_back();
+  addGroup(std::move(group));
+}
+
 int Workspace::addGroup(MotionGroup group) {
   group.id = m_nextGroup++;
   const int id = group.id;

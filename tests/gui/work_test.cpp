@@ -93,6 +93,28 @@ TEST_F(BackgroundWork, SamplingTwiceInHasteLeavesOneSetAndOneJob) {
   EXPECT_EQ(m_workspace->groups().back().motions.size(), 3U);
 }
 
+TEST_F(BackgroundWork, RemovedMotionsCanBeBroughtBack) {
+  auto* action = child<QAction>(*m_window, "bringBack");
+  EXPECT_FALSE(action->isEnabled());
+  sampleTwo();
+  const MotionGroup drawn = m_workspace->groups().back();
+  m_workspace->setAside(drawn.id);
+  ASSERT_EQ(m_workspace->groups().size(), 1U);
+  ASSERT_TRUE(action->isEnabled());
+  EXPECT_TRUE(action->text().contains(QString::fromStdString(drawn.name)));
+  action->trigger();
+  ASSERT_EQ(m_workspace->groups().size(), 2U);
+  const MotionGroup& back = m_workspace->groups().back();
+  EXPECT_EQ(back.motions.size(), drawn.motions.size());
+  EXPECT_EQ(back.motions[1].clip, drawn.motions[1].clip);
+  EXPECT_EQ(back.recipe->seed, drawn.recipe->seed);
+  EXPECT_FALSE(action->isEnabled());
+  m_workspace->setAside(back.id);
+  m_workspace->open(m_workspace->experiment(), {});
+  EXPECT_FALSE(action->isEnabled()) << "they belong to the document that they were made in";
+  ASSERT_TRUE(idle());
+}
+
 TEST_F(BackgroundWork, APinnedSetIsNeverReplaced) {
   sampleTwo();
   const int old = m_workspace->groups().back().id;

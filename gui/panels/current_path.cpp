@@ -116,6 +116,19 @@ void CurrentPath::edit(const QString& label, const std::function<void(PathEdit&)
       amend);
 }
 
+double CurrentPath::headingAt(size_t wayPoint) const {
+  const WayPoint& point = m_points.at(wayPoint);
+  if (point.facing) return *point.facing;
+  return m_curve.frames.empty() ? 0.0 : m_curve.frames[frameAt(wayPoint)].heading;
+}
+
+size_t CurrentPath::frameAt(size_t wayPoint) const {
+  const double time = m_points[wayPoint].timeS.value_or(arrivalTimes(m_points)[wayPoint]);
+  const double start = m_points.front().timeS.value_or(0.0);
+  const auto frame = static_cast<size_t>(std::max(0L, std::lround((time - start) * m_curve.fps)));
+  return std::min(frame, std::max<size_t>(1, m_curve.frames.size()) - 1);
+}
+
 void CurrentPath::makeDrawn() {
   if (!drawn()) edit(tr("Make path editable"), [](PathEdit&) {});
 }

@@ -28,6 +28,10 @@ class CurrentPath : public QObject {
   const PathCurve& curve() const { return m_curve; }
   /// The frames that are sampled: as many seconds as the document asks for.
   const std::vector<RootFrame>& frames() const { return m_frames; }
+  /// Where a way-point faces, radians: by its own choice, or as the path has it there.
+  double headingAt(size_t wayPoint) const;
+  /// The frame of curve() at which a way-point is reached.
+  size_t frameAt(size_t wayPoint) const;
   /// Why the path cannot be used as it is; empty where all is well.
   const QString& problem() const { return m_problem; }
 

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kReachPixels = 16.0;
 constexpr double kDiscM = 0.11;
+constexpr double kKnobM = 0.6;  ///< from its way-point
+constexpr double kKnobPixels = 5.0;
 
 QString tr(const char* text) {
   return QCoreApplication::translate("FloorPathTool", text);
@@ -18,8 +20,22 @@ QString tr(const char* text) {
 
 void FloorPathTool::setActive(bool active) {
   m_active = active;
-  m_held = false;
+  m_held = Held::Nothing;
   m_chosen.reset();
+}
+
+QPointF FloorPathTool::seen(double x, double z, const QSize& size) const {
+  const auto at = m_scene.screenPoint({static_cast<float>(x), 0.0F, static_cast<float>(z)},
+                                      size.width(), size.height());
+  return {at.x, at.y};
+}
+
+std::optional<QPointF> FloorPathTool::knob(const QSize& size) const {
+  if (!m_chosen || *m_chosen >= m_path.points().size() || m_path.path()->name != m_pathName)
+    return std::nullopt;
+  const WayPoint& point = m_path.points()[*m_chosen];
+  const double heading = m_path.headingAt(*m_chosen);
+  return seen(point.x + kKnobM * std::sin(heading), point.z + kKnobM * std::cos(heading), size);
 }
 
 std::optional<size_t> FloorPathTool::wayPointAt(const QPointF& at, const QSize& size) const {
@@ -27,9 +43,8 @@ std::optional<size_t> FloorPathTool::wayPointAt(const QPointF& at, const QSize& 
   double nearest = kReachPixels;
   const auto& points = m_path.points();
   for (size_t i = 0; i < points.size(); ++i) {
-    const Vec3 place(static_cast<float>(points[i].x), 0.0F, static_cast<float>(points[i].z));
-    const auto seen = m_scene.screenPoint(place, size.width(), size.height());
-    const double away = std::hypot(seen.x - at.x(), seen.y - at.y());
+    const QPointF off = seen(points[i].x, points[i].z, size) - at;
+    const double away = std::hypot(off.x(), off.y());
     if (away < nearest) {
       nearest = away;
       best = i;
@@ -46,24 +61,35 @@ void FloorPathTool::followPath() {
 
 bool FloorPathTool::press(const QPointF& at, const QSize& size) {
   followPath();
-  const auto found = wayPointAt(at, size);
-  m_held = m_active && found.has_value();
+  m_held = Held::Nothing;
   m_moved = false;
-  if (m_held) m_chosen = found;
-  return m_held;
+  if (!m_active) return false;
+  const auto turned = knob(size);
+  const auto found = wayPointAt(at, size);
+  // From afar the knob lies on its way-point, which then is what is meant.
+  if (turned && std::hypot(turned->x() - at.x(), turned->y() - at.y()) < kReachPixels && !found) {
+    m_held = Held::Facing;
+  } else if (found) {
+    m_held = Held::WayPoint;
+    m_chosen = found;
+  }
+  return m_held != Held::Nothing;
 }
 
 void FloorPathTool::drag(const QPointF& to, const QSize& size) {
-  if (!m_held || !m_chosen) return;
+  if (m_held == Held::Nothing || !m_chosen || *m_chosen >= m_path.points().size()) return;
   const auto place = m_scene.floorPoint(to.x(), to.y(), size.width(), size.height());
   // Near the horizon a pixel is hundreds of metres.
   if (!place || place->norm() > 1000.0F) return;
-  m_path.edit(
-      tr("Move way-point"),
-      [&](PathEdit& edit) {
-        if (*m_chosen < edit.size()) edit.move(*m_chosen, place->x(), place->z());
-      },
-      m_moved);
+  const size_t index = *m_chosen;
+  if (m_held == Held::Facing)
+    m_path.edit(
+        tr("Facing at way-point"),
+        [&](PathEdit& edit) { edit.face(index, place->x(), place->z()); }, m_moved);
+  else
+    m_path.edit(
+        tr("Move way-point"), [&](PathEdit& edit) { edit.move(index, place->x(), place->z()); },
+        m_moved);
   m_moved = true;
 }
 
@@ -88,18 +114,27 @@ QPolygonF FloorPathTool::disc(const WayPoint& point, double radiusM, const QSize
   QPolygonF out;
   for (int k = 0; k < 24; ++k) {
     const double a = k * 2.0 * std::numbers::pi / 24;
-    const Vec3 place(static_cast<float>(point.x + radiusM * std::cos(a)), 0.0F,
-                     static_cast<float>(point.z + radiusM * std::sin(a)));
-    const auto seen = m_scene.screenPoint(place, size.width(), size.height());
-    out << QPointF(seen.x, seen.y);
+    out << seen(point.x + radiusM * std::cos(a), point.z + radiusM * std::sin(a), size);
   }
   return out;
+}
+
+void FloorPathTool::paintKnob(QPainter& painter, const QSize& size, const Inks& inks) const {
+  const auto at = knob(size);
+  if (!at) return;
+  const WayPoint& point = m_path.points()[*m_chosen];
+  // Hollow where the body faces along the path.
+  painter.setPen(QPen(inks.text, 2.0));
+  painter.setBrush(point.facing ? QBrush(inks.text) : QBrush(inks.background));
+  painter.drawLine(seen(point.x, point.z, size), *at);
+  painter.drawEllipse(*at, kKnobPixels, kKnobPixels);
 }
 
 void FloorPathTool::paint(QPainter& painter, const QSize& size, const Inks& inks) const {
   if (!m_active) return;
   const auto& points = m_path.points();
   painter.setRenderHint(QPainter::Antialiasing);
+  paintKnob(painter, size, inks);
   for (size_t i = 0; i < points.size(); ++i) {
     const bool chosen = m_chosen == i && m_path.path()->name == m_pathName;
     // Open discs stand for way-points that the path will get when it is edited.

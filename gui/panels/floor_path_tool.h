@@ -1,4 +1,5 @@
-// Editing the current path on the floor of the 3D view: discs that are dragged.
+// Editing the current path on the floor of the 3D view: discs that are dragged, and a knob before
+// the chosen one that turns where the body faces.
 #pragma once
 
 #include <QPainter>
@@ -20,16 +21,21 @@ class FloorPathTool {
   void setActive(bool active);
   bool active() const { return m_active; }
 
-  /// Takes hold of the way-point under the mouse; false where there is none.
+  /// Takes hold of the way-point or knob under the mouse; false where there is none.
   bool press(const QPointF& at, const QSize& size);
   void drag(const QPointF& to, const QSize& size);
-  void release() { m_held = false; }
+  void release() { m_held = Held::Nothing; }
   bool add(const QPointF& at, const QSize& size);
   void removeChosen();
   void paint(QPainter& painter, const QSize& size, const Inks& inks) const;
 
  private:
+  enum class Held { Nothing, WayPoint, Facing };
   std::optional<size_t> wayPointAt(const QPointF& at, const QSize& size) const;
+  /// Where the chosen way-point's knob is seen; none where none is chosen.
+  std::optional<QPointF> knob(const QSize& size) const;
+  QPointF seen(double x, double z, const QSize& size) const;
+  void paintKnob(QPainter& painter, const QSize& size, const Inks& inks) const;
   QPolygonF disc(const WayPoint& point, double radiusM, const QSize& size) const;
 
   CurrentPath& m_path;
@@ -37,7 +43,8 @@ class FloorPathTool {
   /// Forgets a choice that was made on another path.
   void followPath();
 
-  bool m_active = false, m_held = false, m_moved = false;
+  bool m_active = false, m_moved = false;
+  Held m_held = Held::Nothing;
   std::string m_pathName;
   std::optional<size_t> m_chosen;
 };

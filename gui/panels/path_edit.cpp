@@ -114,6 +114,12 @@ void PathEdit::setFacing(size_t index, std::optional<double> radians) {
   m_points.at(index).facing = radians;
 }
 
+void PathEdit::face(size_t index, double x, double z) {
+  const WayPoint& point = m_points.at(index);
+  if (x == point.x && z == point.z) return;
+  setFacing(index, std::atan2(x - point.x, z - point.z));
+}
+
 void PathEdit::setTime(size_t index, std::optional<double> timeS) {
   if (timeS) {
     const std::vector<double> times = arrivalTimes(m_points);

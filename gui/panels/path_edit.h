@@ -36,6 +36,8 @@ class PathEdit {
   void setSpeed(size_t index, std::optional<double> speedMS);
   /// Heading in radians; none: along the path.
   void setFacing(size_t index, std::optional<double> radians);
+  /// Faces a place on the floor; nothing changes where that is the way-point itself.
+  void face(size_t index, double x, double z);
   /// When to be there, kept between the times of its neighbours; none: by speed.
   void setTime(size_t index, std::optional<double> timeS);
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kReachPixels = 11.0;
 constexpr double kEdgePixels = 34.0;
+constexpr double kKnobPixels = 30.0;                 ///< from its way-point
 constexpr double kNearest = 400.0, kFurthest = 2.0;  ///< pixels per metre
 
 }  // namespace
@@ -22,9 +23,9 @@ PathView::PathView(Workspace& workspace, CurrentPath& path, QWidget* parent)
   setMouseTracking(true);
   setFocusPolicy(Qt::StrongFocus);
   setFont(readableFont(font()));
-  setToolTip(
-      tr("Drag a way-point to move it; double-click to add one; Delete removes the chosen "
-         "one. Drag the floor to shift, wheel to zoom."));
+  setToolTip(tr(
+      "Drag a way-point to move it, the knob of the chosen one to turn the body; double-click to "
+      "add one; Delete removes the chosen one. Drag the floor to shift, wheel to zoom."));
   connect(&path, &CurrentPath::changed, this, &PathView::pathChanged);
   connect(&workspace, &Workspace::timeChanged, this, qOverload<>(&QWidget::update));
   pathChanged();
@@ -108,6 +109,18 @@ std::optional<size_t> PathView::wayPointAt(const QPointF& at) const {
   return best;
 }
 
+std::optional<QPointF> PathView::knob() const {
+  if (!m_chosen || *m_chosen >= m_path.points().size()) return std::nullopt;
+  const WayPoint& point = m_path.points()[*m_chosen];
+  const double heading = m_path.headingAt(*m_chosen);
+  return toScreen(point.x, point.z) + kKnobPixels * QPointF(-std::sin(heading), -std::cos(heading));
+}
+
+bool PathView::atKnob(const QPointF& at) const {
+  const auto place = knob();
+  return place && std::hypot(place->x() - at.x(), place->y() - at.y()) < kReachPixels;
+}
+
 void PathView::resizeEvent(QResizeEvent* /*event*/) {
   if (!m_touched) fit();
 }
@@ -116,6 +129,10 @@ void PathView::mousePressEvent(QMouseEvent* event) {
   m_last = event->localPos();
   m_moved = false;
   const auto found = wayPointAt(m_last);
+  if (event->button() == Qt::LeftButton && !found && atKnob(m_last)) {
+    m_drag = Drag::Facing;
+    return;
+  }
   if (event->button() == Qt::LeftButton && found) {
     choose(found);
     m_drag = Drag::WayPoint;
@@ -128,27 +145,35 @@ void PathView::mousePressEvent(QMouseEvent* event) {
 void PathView::mouseMoveEvent(QMouseEvent* event) {
   const QPointF at = event->localPos();
   if (m_drag == Drag::None) {
-    setCursor(wayPointAt(at) ? Qt::PointingHandCursor : Qt::ArrowCursor);
+    setCursor(wayPointAt(at) || atKnob(at) ? Qt::PointingHandCursor : Qt::ArrowCursor);
     return;
   }
   const QPointF moved = at - m_last;
-  if (m_drag == Drag::WayPoint && m_chosen) {
+  if (m_drag != Drag::Shift) {
     // A hand that trembles on a click does not edit.
     if (!m_moved && std::hypot(moved.x(), moved.y()) < 3.0) return;
-    const QPointF place = toFloor(at);
-    m_path.edit(
-        tr("Move way-point"),
-        [&](PathEdit& edit) {
-          if (*m_chosen < edit.size()) edit.move(*m_chosen, place.x(), place.y());
-        },
-        m_moved);
-    m_moved = true;
-  } else if (m_drag == Drag::Shift) {
+    dragChosen(at);
+  } else {
     m_centre += moved / m_pixelsPerMetre;
     m_touched = true;
     update();
   }
   m_last = at;
+}
+
+void PathView::dragChosen(const QPointF& to) {
+  if (!m_chosen || *m_chosen >= m_path.points().size()) return;
+  const QPointF place = toFloor(to);
+  const size_t index = *m_chosen;
+  if (m_drag == Drag::Facing)
+    m_path.edit(
+        tr("Facing at way-point"), [&](PathEdit& edit) { edit.face(index, place.x(), place.y()); },
+        m_moved);
+  else
+    m_path.edit(
+        tr("Move way-point"), [&](PathEdit& edit) { edit.move(index, place.x(), place.y()); },
+        m_moved);
+  m_moved = true;
 }
 
 void PathView::mouseReleaseEvent(QMouseEvent* /*event*/) {

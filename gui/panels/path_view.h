@@ -22,6 +22,8 @@ class PathView : public QWidget {
   /// Shows all of the path.
   void fit();
   QPointF toScreen(double x, double z) const;
+  /// Where the knob is that turns the chosen way-point's body; none where none is chosen.
+  std::optional<QPointF> knob() const;
 
  Q_SIGNALS:
   void chosenChanged();
@@ -36,15 +38,18 @@ class PathView : public QWidget {
   void wheelEvent(QWheelEvent* event) override;
 
  private:
-  enum class Drag { None, Shift, WayPoint };
+  enum class Drag { None, Shift, WayPoint, Facing };
   QPointF toFloor(const QPointF& screen) const;  ///< (x, z)
   std::optional<size_t> wayPointAt(const QPointF& at) const;
+  bool atKnob(const QPointF& at) const;
+  void dragChosen(const QPointF& to);
   void pathChanged();
   void paintGrid(QPainter& painter, const Inks& inks) const;
   void paintScaleBar(QPainter& painter, const Inks& inks) const;
   void paintLine(QPainter& painter, const Inks& inks) const;
   void paintArrows(QPainter& painter, const Inks& inks) const;
   void paintPoints(QPainter& painter, const Inks& inks) const;
+  void paintKnob(QPainter& painter, const Inks& inks) const;
   void paintLegend(QPainter& painter, const Inks& inks) const;
   void paintNow(QPainter& painter, const Inks& inks) const;
 

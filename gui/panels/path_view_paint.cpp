@@ -44,6 +44,7 @@ void PathView::paintEvent(QPaintEvent* /*event*/) {
   paintGrid(painter, inks);
   paintLine(painter, inks);
   paintArrows(painter, inks);
+  paintKnob(painter, inks);
   paintPoints(painter, inks);
   paintNow(painter, inks);
   paintScaleBar(painter, inks);
@@ -124,6 +125,17 @@ void PathView::paintPoints(QPainter& painter, const Inks& inks) const {
     const bool named = chosen || i == 0 || i + 1 == points.size() || points.size() <= 12;
     if (named) painter.drawText(at + QPointF(9, -7), QString::number(i + 1));
   }
+}
+
+void PathView::paintKnob(QPainter& painter, const Inks& inks) const {
+  const auto at = knob();
+  if (!at) return;
+  const WayPoint& point = m_path.points()[*m_chosen];
+  // Hollow where the body faces along the path.
+  painter.setPen(QPen(inks.text, 1.8));
+  painter.setBrush(point.facing ? QBrush(inks.text) : QBrush(inks.background));
+  painter.drawLine(toScreen(point.x, point.z), *at);
+  painter.drawEllipse(*at, 4.0, 4.0);
 }
 
 void PathView::paintNow(QPainter& painter, const Inks& inks) const {

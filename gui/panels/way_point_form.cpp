@@ -150,16 +150,13 @@ void WayPointForm::refresh() {
   m_time->setEnabled(point.timeS.has_value());
   if (shown) {
     // Values that are not fixed show what they come to, so that fixing them changes nothing.
-    const double time = point.timeS.value_or(arrivalTimes(points)[*chosen]);
-    m_time->setValue(time);
+    m_time->setValue(point.timeS.value_or(arrivalTimes(points)[*chosen]));
     const PathCurve& curve = m_path.curve();
-    const double start = points.front().timeS.value_or(0.0);
-    const auto at = static_cast<size_t>(std::max(0L, std::lround((time - start) * curve.fps)));
-    const size_t frame = std::min(at, std::max<size_t>(1, curve.frames.size()) - 1);
     const bool sampled = !curve.frames.empty();
-    m_speed->setValue(point.speedMS.value_or(sampled ? curve.speedMS[frame] : kUsualSpeedMS));
-    const double heading = point.facing.value_or(sampled ? curve.frames[frame].heading : 0.0);
-    m_facing->setValue(std::remainder(heading, 2.0 * std::numbers::pi) * kDegrees);
+    m_speed->setValue(
+        point.speedMS.value_or(sampled ? curve.speedMS[m_path.frameAt(*chosen)] : kUsualSpeedMS));
+    m_facing->setValue(std::remainder(m_path.headingAt(*chosen), 2.0 * std::numbers::pi) *
+                       kDegrees);
   }
   m_filling = false;
 }

@@ -10,6 +10,7 @@
 #include <QTest>
 #include <QTimer>
 #include <QToolButton>
+#include <numbers>
 
 #include "gui/gui_support.h"
 #include "panels/path_view.h"
@@ -100,6 +101,31 @@ TEST_F(MouseJourney, DrawsAPathSamplesPicksBrushesUndoesSavesAndReopens) {
   EXPECT_GT(after.x, before.x) << "the left of the picture is the walker's left, +X";
   EXPECT_LT(after.z, before.z);
   EXPECT_EQ(m_workspace->history().size(), edits + 1) << "a drag is one edit";
+
+  // The knob of the way-point that was dragged turns the body there, in both views.
+  const auto knob = top->knob();
+  ASSERT_TRUE(knob);
+  EXPECT_FALSE(path().wayPoints.back().facing);
+  const QPoint end = top->toScreen(after.x, after.z).toPoint();
+  drag(top, knob->toPoint(), end + QPoint(-40, 0));
+  ASSERT_TRUE(path().wayPoints.back().facing);
+  EXPECT_NEAR(*path().wayPoints.back().facing, std::numbers::pi / 2, 0.05) << "to +X, the left";
+  EXPECT_EQ(path().wayPoints.back().x, after.x);
+  auto* floor = inPanel<SceneView>("scene", "sceneView");
+  click("scene", "sceneEditPath");
+  settle();
+  const auto seen = [&](double x, double z) {
+    const auto at = floor->scene().screenPoint({static_cast<float>(x), 0.F, static_cast<float>(z)},
+                                               floor->width(), floor->height());
+    return QPointF(at.x, at.y).toPoint();
+  };
+  QTest::mouseClick(floor, Qt::LeftButton, {}, seen(after.x, after.z));
+  drag(floor, seen(after.x + 0.6, after.z), seen(after.x, after.z + 0.8));
+  EXPECT_NEAR(*path().wayPoints.back().facing, 0.0, 0.05) << "along +Z";
+  EXPECT_EQ(path().wayPoints.back().x, after.x);
+  click("scene", "sceneEditPath");
+  for (int turn = 0; turn < 2; ++turn) m_workspace->undo();
+  EXPECT_EQ(path().wayPoints.back(), after);
 
   // Sampled along it, and a body picked in the scene.
   click("sampling", "sampleButton");

@@ -74,6 +74,18 @@ TEST(PathEdit, APlaceBehindATimedPathIsWalkedAtItsLastSpeed) {
   EXPECT_NEAR(times.back(), 6.0, 1e-3);
 }
 
+TEST(PathEdit, AWayPointFacesAPlaceOnTheFloor) {
+  PathEdit edit({WayPoint{.x = 1.0, .z = 2.0, .timeS = {}, .speedMS = {}, .facing = {}},
+                 WayPoint{.x = 1.0, .z = 5.0, .timeS = {}, .speedMS = {}, .facing = {}}});
+  edit.face(0, 1.0, 2.0);
+  EXPECT_FALSE(edit.points()[0].facing) << "there is no direction to itself";
+  edit.face(0, 3.0, 2.0);
+  EXPECT_NEAR(*edit.points()[0].facing, std::atan2(1.0, 0.0), 1e-12);
+  edit.face(0, 1.0, -1.0);
+  EXPECT_NEAR(std::abs(*edit.points()[0].facing), std::atan2(0.0, -1.0), 1e-12);
+  EXPECT_THROW(edit.face(2, 0.0, 0.0), std::out_of_range);
+}
+
 TEST(PathEdit, WhatFollowsARemovedWayPointKeepsItsSpeed) {
   PathEdit edit({point(0, 0, {}, 1.0), point(0, 1, {}, 0.5), point(0, 2), point(0, 3)});
   ASSERT_TRUE(edit.remove(1));

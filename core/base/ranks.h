@@ -44,9 +44,13 @@ class Ranks {
   /// If it throws on any, the first rank throws that error (of another rank with its number in
   /// front) and the others EndedElsewhere.
   virtual void together(const std::function<void()>& body);
+  /// Of several processes: `say` is called at the first one as soon as it is told to stop, on any
+  /// thread. A launcher that lost a process may leave no time for more.
+  virtual void whenStopped(std::function<void()> say);
 };
 
-/// Items of one rank's share: consecutive, and as many as those of the others or one more.
+/// Items of one rank's share: consecutive; the first ranks have one more where they cannot all have
+/// as many.
 std::pair<size_t, size_t> shareOf(size_t items, int rank, int size);
 
 }  // namespace marey

@@ -1,5 +1,6 @@
 // marey sample: many motions of one model along a path.
 #include <chrono>
+#include <cstdio>
 #include <memory>
 
 #include "families.h"
@@ -36,6 +37,10 @@ Json recipe(const Options& o, const MotionModel& model, const Context& context) 
 
 /// What a failed run leaves behind, unless it had finished nothing.
 void tellOnFailure(const UnfinishedFolder& folder, Context& context) {
+  context.ranks->whenStopped([place = folder.place().string()] {
+    fmt::print(stderr, "marey: stopping; motions that are finished stay in {} for --resume\n",
+               place);
+  });
   context.afterFailure = [folder]() -> std::string {
     const size_t finished = folder.abandon();
     if (finished == 0) return "";

@@ -1,6 +1,7 @@
 #include "experiment/packed_motion.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace marey {
 
@@ -35,6 +36,44 @@ Matrix unpackPoses(Unpacker& bytes) {
                             values.size()));
   Matrix out(static_cast<long>(values.size()) / cols, cols);
   std::copy(values.begin(), values.end(), out.data());
+  return out;
+}
+
+std::vector<std::string> packedSamples(const MotionModel& model,
+                                       std::span<const SampleRequest> requests, SamplingPace& pace,
+                                       Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto sampled = sampleSequences(model, requests, progress);
+  pace.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (const SampleRequest& request : requests)
+    pace.frames += static_cast<double>(request.samples) * static_cast<double>(request.path.size());
+  std::vector<FeatureSequence> scored;
+  for (const auto& ofRequest : sampled)
+    for (const FeatureSequence& sequence : ofRequest)
+      if (sequence.frameCount() > model.info().context) scored.push_back(sequence);
+  Progress scoring = progress.part(1.0, 1.0);
+  const auto scores = scoreSequences(model, scored, false, scoring);
+  auto next = scores.begin();
+  std::vector<std::string> out;
+  for (const auto& ofRequest : sampled) {
+    Packer packer;
+    for (const FeatureSequence& sequence : ofRequest) {
+      const bool hasScore = sequence.frameCount() > model.info().context;
+      pack(sequence.pose, packer);
+      packer.add(hasScore);
+      if (hasScore) pack(*next++, packer);
+    }
+    out.push_back(packer.take());
+  }
+  return out;
+}
+
+std::vector<ScoredSequence> unpackSamples(std::string_view bytes) {
+  std::vector<ScoredSequence> out;
+  for (Unpacker rest(bytes); !rest.done();) {
+    out.push_back({unpackPoses(rest), std::nullopt});
+    if (rest.number<bool>()) out.back().score = unpackScore(rest);
+  }
   return out;
 }
 

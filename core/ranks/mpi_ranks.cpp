@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 #include <thread>
+#include <utility>
 
 #include <boost/mpi/collectives/broadcast.hpp>
 #include <boost/mpi/communicator.hpp>
@@ -28,7 +29,7 @@ enum Tag { kProgress = 1, kFared, kEnded, kStop, kResult };
 constexpr std::chrono::milliseconds kPause(5);
 /// How long the others may take to stop after a failure. mpirun kills a second after it was told to
 /// end, or after a rank has died: what there is to say must be said before.
-constexpr std::chrono::milliseconds kPatience(700);
+constexpr std::chrono::milliseconds kPatience(400);
 /// Progress smaller than this is not sent.
 constexpr double kLeastProgress = 0.002;
 
@@ -63,6 +64,7 @@ struct MpiRanks::Call {
   double sent = 0.0;
   bool stopSent = false;
   std::stop_source stop;
+  std::function<void()> whenStopped;
   std::optional<Clock::time_point> stopped;
   // At the first rank, of every rank.
   std::vector<double> progress;
@@ -154,7 +156,10 @@ void MpiRanks::mindElsewhere(Progress&) {
 }
 
 void MpiRanks::mindMessages(Progress& progress) {
-  if (progress.cancelled()) stopAll();
+  if (progress.cancelled()) {
+    if (first() && m_call->whenStopped) std::exchange(m_call->whenStopped, {})();
+    stopAll();
+  }
   if (first())
     mindAtFirst(progress);
   else
@@ -260,6 +265,10 @@ std::string MpiRanks::fromFirst(const std::function<std::string()>& make) {
   throwIfFailed(agree({}, none));
   mpi::broadcast(*m_world, text, 0);
   return text;
+}
+
+void MpiRanks::whenStopped(std::function<void()> say) {
+  m_call->whenStopped = std::move(say);
 }
 
 void MpiRanks::together(const std::function<void()>& body) {

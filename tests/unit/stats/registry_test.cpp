@@ -60,7 +60,7 @@ TEST(Registry, EveryStatisticHasAFiniteValueOnWalkers) {
   StatisticInput input = inputOf(samples(), &natural());
   input.wanted = &wanted;
   for (const Statistic& s : allStatistics()) {
-    ASSERT_TRUE(s.applies(input)) << s.name;
+    ASSERT_TRUE(appliesTo(s, input)) << s.name;
     EXPECT_TRUE(std::isfinite(valueOf(s, input))) << s.name;
   }
 }
@@ -91,8 +91,8 @@ TEST(Registry, AWeightOfTwoEqualsTheClipTwice) {
   const StatisticInput doubled = inputOf(repeated, &natural());
   for (const Statistic& s : allStatistics()) {
     // Diversity takes no pair of a clip and its own copy; path error needs wanted paths.
-    if (s.name == "diversity" || !s.applies(input)) continue;
-    EXPECT_NEAR(s.prepare(input)({{1, 2, 1, 1}}), valueOf(s, doubled),
+    if (s.name == "diversity" || !appliesTo(s, input)) continue;
+    EXPECT_NEAR(prepared(s, input)({{1, 2, 1, 1}}), valueOf(s, doubled),
                 1e-9 * std::max(1.0, std::abs(valueOf(s, doubled))))
         << s.name;
   }

@@ -145,6 +145,30 @@ class RanksScore(RanksCase):
         self.assertEqual(done.stdout, "")
 
 
+class RanksAnalyze(RanksCase):
+    def test_any_number_of_processes_prints_the_same_object(self):
+        walked = self.walker(clips=7, seconds=3, seed=3)
+        words = ("analyze", walked, "--against", self.clips, "--fps", "20", "--resamples", "20",
+                 "--json", "--quiet")
+        printed = {ranks: launch(ranks, *words) for ranks in (1, 2, 3)}
+        for ranks, done in printed.items():
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stdout, printed[1].stdout, f"{ranks} processes")
+        result = json.loads(printed[1].stdout)
+        self.assertEqual(result["clips"], 7)
+        self.assertGreater(len(result["statistics"]), 12)
+        self.assertGreater(result["footsteps"]["max_count"], 5)
+
+    def test_a_clip_of_other_joints_is_named_whichever_process_reads_it(self):
+        other = self.dir / "other.bvh"
+        other.write_text(self.clip.read_text().replace("LeftFoot", "LeftPaw"))
+        for ranks in (1, 2):
+            done = launch(ranks, "analyze", self.clip, other)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertEqual(len(own_lines(done.stderr)), 1, done.stderr)
+            self.assertIn("other", own_lines(done.stderr)[0])
+
+
 class RanksReport(RanksCase):
     def test_any_number_of_processes_writes_the_same_report_but_for_times(self):
         document = self.dir / "experiment.json"

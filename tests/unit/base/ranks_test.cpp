@@ -1,5 +1,7 @@
 #include "base/ranks.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -42,7 +44,8 @@ TEST(OneProcess, DoesAllTheWorkItself) {
 
 TEST(PackedValues, ComeBackBitForBitAndACutIsRefused) {
   Packer packer;
-  packer.add(0.1).add(std::string("na\0me", 5)).add(std::vector<double>{1e-300, -0.0}).add(true);
+  packer.add(0.1);
+  packer.add(std::string("na\0me", 5)).add(std::vector<double>{1e-300, -0.0}).add(true);
   const std::string bytes = packer.take();
   Unpacker rest(bytes);
   EXPECT_EQ(rest.number<double>(), 0.1);

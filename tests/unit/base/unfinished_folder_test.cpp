@@ -58,7 +58,7 @@ TEST(AnUnfinishedFolder, IsRefusedUnlessItIsToBeResumed) {
   const TempFolder folder;
   breakRun(folder / "out");
   const std::string text =
-      messageOf([&] { UnfinishedFolder::open(folder / "out", run(1), false); });
+      messageOf<InputError>([&] { UnfinishedFolder::open(folder / "out", run(1), false); });
   EXPECT_NE(text.find("out.partial"), std::string::npos) << text;
   EXPECT_NE(text.find("parts 0, 2 of 3"), std::string::npos) << text;
   EXPECT_NE(text.find("--resume"), std::string::npos) << text;
@@ -78,7 +78,8 @@ TEST(AnUnfinishedFolder, GoesOnWithWhatLacksAndTheNotesOfTheFirstStart) {
 TEST(AnUnfinishedFolder, OfAnotherRunIsNotResumed) {
   const TempFolder folder;
   breakRun(folder / "out");
-  const std::string text = messageOf([&] { UnfinishedFolder::open(folder / "out", run(9), true); });
+  const std::string text =
+      messageOf<InputError>([&] { UnfinishedFolder::open(folder / "out", run(9), true); });
   EXPECT_NE(text.find("'seed': expected 9"), std::string::npos) << text;
   EXPECT_NE(text.find("found 1"), std::string::npos) << text;
   EXPECT_THROW(UnfinishedFolder::open(folder / "other", run(1), true), InputError);

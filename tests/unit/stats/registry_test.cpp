@@ -11,6 +11,7 @@
 #include "stats/bones.h"
 #include "stats/footsteps.h"
 #include "stats/statistic.h"
+#include "stats/weighted.h"
 
 namespace marey::stats {
 namespace {
@@ -139,16 +140,11 @@ TEST(Bootstrap, TheIntervalOfAMeanIsThatOfTheNormalApproximation) {
                        "The mean of x.",
                        "test",
                        false,
-                       [](const StatisticInput&) { return true; },
-                       [](const StatisticInput& in) {
-                         const std::vector<Clip>* set = in.clips;
-                         return [set](const Weights& w) {
-                           double sum = 0.0;
-                           for (size_t i = 0; i < set->size(); ++i)
-                             sum += w.clips[i] * (*set)[i].at(0, 0).x();
-                           return sum / std::accumulate(w.clips.begin(), w.clips.end(), 0.0);
-                         };
-                       }};
+                       [](const StatisticSetting&) { return true; },
+                       ratioRule([](const Clip& clip, size_t, const StatisticSetting&) {
+                         return RatioPart{clip.at(0, 0).x(), 1.0};
+                       }),
+                       combineRatio()};
   const StatisticInput input{.clips = &clips, .natural = &clips};
   const StatisticResult r = evaluate({mean}, input, {.resamples = 2000, .splits = 400}).front();
   EXPECT_NEAR(r.value, 0.5, 1e-12);

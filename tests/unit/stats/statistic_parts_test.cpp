@@ -1,5 +1,6 @@
 #include "stats/statistic_parts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

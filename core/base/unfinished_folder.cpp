@@ -96,8 +96,8 @@ UnfinishedFolder UnfinishedFolder::open(const fs::path& target, const Run& run, 
     }
     if (left < out.m_run.parts)
       throw InputError({.path = place.string()}, "no unfinished run",
-                       fmt::format("one that lacks parts {} of {}: --resume goes on with it, and "
-                                   "so does removing the folder begin anew",
+                       fmt::format("one that lacks parts {} of {}: go on with it by --resume, or "
+                                   "remove it",
                                    rangesText(out.missing()), out.m_run.parts));
   } else if (resume) {
     throw InputError({.path = place.string()}, "an unfinished run", "nothing to resume");

@@ -44,6 +44,11 @@ if(NOT MAREY_TRAIN_ONLY)
   endforeach()
 endif()
 
+if(MAREY_MPI)
+  marey_require_here(MPI libopenmpi-dev COMPONENTS CXX)
+  marey_require_here(Boost libboost-mpi-dev COMPONENTS mpi serialization)
+endif()
+
 # fmt: the shared library where it is installed, else its headers alone.
 add_library(marey_fmt INTERFACE)
 if(fmt_FOUND)

@@ -6,10 +6,7 @@
 #include "base/error.h"
 #include "cli/command.h"
 #include "cli/readers.h"
-#include "motion/resample.h"
-#include "motion/roles.h"
-#include "stats/footsteps.h"
-#include "stats/statistic.h"
+#include "experiment/clip_statistics.h"
 
 namespace marey::cli {
 namespace {
@@ -22,15 +19,6 @@ struct AnalyzeOptions {
   double toleranceStepCmS = 0.0;
   int resamples = 400;
 };
-
-std::vector<Clip> readAt(const std::vector<std::string>& inputs, const AnalyzeOptions& options,
-                         double fps, Progress progress) {
-  std::vector<Clip> clips = readAll(expandInputs(inputs), options.read, progress);
-  // Without a choice every clip is taken at the rate of the first one.
-  const double rate = fps > 0.0 ? fps : clips.front().fps;
-  for (Clip& clip : clips) clip = resampled(clip, rate);
-  return clips;
-}
 
 Json numberOrNull(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
@@ -87,79 +75,50 @@ std::string statisticsText(const std::vector<stats::StatisticResult>& results, b
   return text;
 }
 
-double totalSeconds(const std::vector<Clip>& clips) {
-  double seconds = 0.0;
-  for (const Clip& clip : clips) seconds += clip.seconds();
-  return seconds;
-}
-
-std::string headText(const std::vector<Clip>& clips, const std::vector<int>& feet,
-                     const std::optional<stats::FootstepCurve>& curve) {
-  std::string text = fmt::format("{} clips, {:.1f} s at {} frames per second\n", clips.size(),
-                                 totalSeconds(clips), clips.front().fps);
-  if (!curve) return text + "no feet: choose them with --feet to count footsteps\n\n";
+std::string headText(const ClipStatistics& found) {
+  std::string text = fmt::format("{} clips, {:.1f} s at {} frames per second\n", found.clips,
+                                 found.seconds, found.fps);
+  if (!found.footsteps) return text + "no feet: choose them with --feet to count footsteps\n\n";
   std::string names;
-  for (int foot : feet) names += (names.empty() ? "" : ", ") + clips.front().skeleton->names[foot];
-  text += fmt::format("footsteps of {}: {} at most", names, curve->maxCount);
-  if (curve->maxCount > 0)
-    text += fmt::format(", 95 % of them at {:.3g} cm/s, lasting {:.2f} +- {:.2f} s", curve->v95CmS,
-                        curve->durationMeanS, curve->durationStdS);
+  for (int foot : found.feet) names += (names.empty() ? "" : ", ") + found.skeleton->names[foot];
+  const stats::FootstepCurve& curve = *found.footsteps;
+  text += fmt::format("footsteps of {}: {} at most", names, curve.maxCount);
+  if (curve.maxCount > 0)
+    text += fmt::format(", 95 % of them at {:.3g} cm/s, lasting {:.2f} +- {:.2f} s", curve.v95CmS,
+                        curve.durationMeanS, curve.durationStdS);
   return text + "\n\n";
-}
-
-/// The chosen feet, else those that the joint names tell; none where they tell none.
-std::vector<int> chosenFeet(const Skeleton& skeleton, const std::string& names) {
-  return names.empty() ? rolesOf(skeleton).feet : jointsByName(skeleton, names);
-}
-
-/// 1.0 cm/s for people, 0.3 cm/s for dogs, as the papers have it.
-double toleranceStep(const Skeleton& skeleton, double chosen) {
-  if (chosen > 0.0) return chosen;
-  return rolesOf(skeleton).quadruped ? 0.3 : 1.0;
 }
 
 void runAnalyze(const Context& context, const AnalyzeOptions& options) {
   Progress progress = context.progress("analyzing");
-  const std::vector<Clip> clips =
-      readAt(options.inputs, options, options.fps, progress.part(0.0, 0.3));
-  const double fps = clips.front().fps;
-  std::vector<Clip> natural;
-  if (!options.against.empty())
-    natural = readAt(options.against, options, fps, progress.part(0.3, 0.5));
-  const Skeleton& skeleton = *clips.front().skeleton;
-  stats::StatisticInput input{.clips = &clips};
-  if (!natural.empty()) input.natural = &natural;
-  input.feet = chosenFeet(skeleton, options.feet);
-  input.footStepCmS = toleranceStep(skeleton, options.toleranceStepCmS);
-
-  Json result = {{"clips", clips.size()}, {"seconds", totalSeconds(clips)}, {"fps", fps}};
-  std::optional<stats::FootstepCurve> curve;
-  if (!input.feet.empty()) {
-    curve = stats::footstepCurve(clips, {.feet = input.feet, .stepCmS = input.footStepCmS});
-    result["footsteps"] = footstepsJson(*curve);
-  }
-  Progress rest = progress.part(0.5, 1.0);
-  const auto results = stats::evaluate(
-      stats::allStatistics(), input, {.resamples = options.resamples, .seed = context.seed}, rest);
+  ClipStatisticsRequest request{.clips = {expandInputs(options.inputs), options.read, options.fps},
+                                .natural = {{}, options.read, 0.0},
+                                .feet = options.feet,
+                                .footStepCmS = options.toleranceStepCmS,
+                                .options = {.resamples = options.resamples, .seed = context.seed}};
+  if (!options.against.empty()) request.natural.files = expandInputs(options.against);
+  const ClipStatistics found = clipStatistics(request, *context.ranks, progress);
+  if (!context.ranks->first()) return;
+  Json result = {{"clips", found.clips}, {"seconds", found.seconds}, {"fps", found.fps}};
+  if (found.footsteps) result["footsteps"] = footstepsJson(*found.footsteps);
   result["bone_length_rmse_cm"] = nullptr;
   Json list = Json::array();
-  for (const stats::StatisticResult& r : results) {
+  for (const stats::StatisticResult& r : found.results) {
     if (r.name == "bone_length_rmse") result["bone_length_rmse_cm"] = numberOrNull(r.value);
-    list.push_back(statisticJson(r, input.natural != nullptr));
+    list.push_back(statisticJson(r, found.compared));
   }
   result["statistics"] = std::move(list);
-  context.print(result, headText(clips, input.feet, curve) +
-                            statisticsText(results, input.natural != nullptr));
+  context.print(result, headText(found) + statisticsText(found.results, found.compared));
 }
 
 }  // namespace
 
 void addAnalyzeCommand(CLI::App& app, Context& context) {
   auto options = std::make_shared<AnalyzeOptions>();
-  CLI::App* command =
-      addCommand(app, context, "analyze", "Footsteps, bone lengths and other statistics of clips",
-                 "marey analyze samples/ --against @test.txt --fps 20 --feet LeftFoot,RightFoot",
-                 [&context, options] { runAnalyze(context, *options); });
+  CLI::App* command = addCommand(
+      app, context, "analyze", "Footsteps, bone lengths and other statistics of clips",
+      "marey analyze samples/ --against @test.txt --fps 20 --feet LeftFoot,RightFoot",
+      [&context, options] { runAnalyze(context, *options); }, Processes::Many);
   command->add_option("inputs", options->inputs, "motion files, folders or @LIST")->required();
   command->add_option("--against", options->against,
                       "natural motion to compare with: files, folders or @LIST");

@@ -89,7 +89,7 @@ Progress Context::progress(const std::string& what) const {
 
 CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name,
                      const std::string& summary, const std::string& example,
-                     std::function<void()> run) {
+                     std::function<void()> run, Processes processes) {
   CLI::App* command = app.add_subcommand(name, summary);
   command->add_flag("--json", context.json, "Print one JSON object on stdout");
   command->add_flag("--quiet", context.quiet, "Print errors only");
@@ -98,7 +98,11 @@ CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name,
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->footer("Example:\n  " + example);
-  command->callback([&context, run = std::move(run)] { context.run = run; });
+  command->callback([&context, name, run = std::move(run), processes] {
+    context.command = name;
+    context.processes = processes;
+    context.run = run;
+  });
   return command;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,17 @@
 
 #include "base/job.h"
 #include "base/json.h"
+#include "base/ranks.h"
 #include "model/motion_model.h"
 
 namespace marey::cli {
+
+/// What a command does where mpirun or srun started several processes of it.
+enum class Processes {
+  One,   ///< refuses: they would write over each other
+  Many,  ///< deals its work out over Context::ranks
+  Own    ///< minds them itself
+};
 
 struct Context {
   bool json = false;
@@ -22,7 +31,14 @@ struct Context {
   uint64_t seed = 1;
   int threads = 0;            ///< 0: as many as there are cores
   std::function<void()> run;  ///< set by the command that was chosen
-  std::string commandLine;    ///< for recipes
+  /// Asked at the first process once a failed command has ended on all: what is left of it for the
+  /// user, after the error; "" for nothing.
+  std::function<std::string()> afterFailure;
+  std::string commandLine;  ///< for recipes
+  std::string command;      ///< name of the command that was chosen
+  Processes processes = Processes::One;
+  /// The processes of this run. On those that are not the first, `json` is false and `quiet` true.
+  std::shared_ptr<Ranks> ranks = std::make_shared<Ranks>();
 
   /// One JSON object on stdout with --json, else `text` (nothing with --quiet).
   void print(const Json& result, const std::string& text) const;
@@ -35,7 +51,7 @@ struct Context {
 /// `example` is shown at the end of --help.
 CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name,
                      const std::string& summary, const std::string& example,
-                     std::function<void()> run);
+                     std::function<void()> run, Processes processes = Processes::One);
 
 // One function per command, called by main in this order.
 void addDemoCommand(CLI::App& app, Context& context);

@@ -3,8 +3,8 @@
 
 #include "base/atomic_file.h"
 #include "cli/command.h"
-#include "experiment/demo_resources.h"
 #include "cli/experiment_command.h"
+#include "experiment/demo_resources.h"
 #include "io/clip_io.h"
 #include "motion/walker.h"
 

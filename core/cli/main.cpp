@@ -3,8 +3,10 @@
 #include <cstdio>
 #include <exception>
 
+#include "ranks/launch.h"
 #include <fmt/format.h>
 
+#include "base/process_rank.h"
 #include "cli/command.h"
 #include "nn/threads.h"
 
@@ -31,9 +33,49 @@ void addCommands(CLI::App& app, Context& context) {
 #endif
 }
 
-int fail(int status, const char* what) {
-  fmt::print(stderr, "marey: {}\n", what);
+/// Whether this is one of several processes, and not the one that speaks for all.
+bool isSilent(const Context& context) {
+  if (context.processes == Processes::Own) return false;
+  try {
+    return marey::processRank().rank > 0;
+  } catch (const marey::InputError&) {  // the environment tells nonsense: that is to be said
+    return false;
+  }
+}
+
+int fail(const Context& context, int status, const char* what) {
+  // The launcher takes the status of the process that speaks, and would end it before it has
+  // spoken if another one said first that it failed.
+  if (isSilent(context)) return 0;
+  fmt::print(stderr, "marey: {}{}\n", what, context.afterFailure ? context.afterFailure() : "");
   return status;
+}
+
+void startProcesses(Context& context) {
+  if (context.processes == Processes::Own) return;
+  if (context.processes == Processes::One && marey::launchedProcesses() > 1)
+    throw marey::UsageError(
+        fmt::format("{}: runs in one process, found {} that were started together", context.command,
+                    marey::launchedProcesses()));
+  context.ranks = marey::startRanks();
+  if (context.ranks->first()) return;
+  context.json = false;
+  context.quiet = true;
+}
+
+int runCommand(Context& context) {
+  try {
+    startProcesses(context);
+    const bool many = context.ranks->size() > 1 && context.threads == 0;
+    marey::nn::configureThreads(many ? marey::coresOfThisProcess() : context.threads,
+                                context.quiet);
+    context.ranks->together(context.run);
+    return 0;
+  } catch (const marey::UsageError& e) {
+    return fail(context, 2, e.what());
+  } catch (const std::exception& e) {
+    return fail(context, 1, e.what());
+  }
 }
 
 std::string joined(int argc, char** argv) {
@@ -57,15 +99,10 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
+    if (isSilent(context)) return 0;
     return app.exit(e) == 0 ? 0 : 2;
   }
-  try {
-    marey::nn::configureThreads(context.threads, context.quiet);
-    context.run();
-    return 0;
-  } catch (const marey::UsageError& e) {
-    return fail(2, e.what());
-  } catch (const std::exception& e) {
-    return fail(1, e.what());
-  }
+  const int status = runCommand(context);
+  context.ranks.reset();  // after all that there was to say: the other processes end with this
+  return status;
 }

@@ -16,7 +16,9 @@ void runReport(const Experiment& experiment, const std::string& out, bool pdf,
   Progress progress = context.progress("report");
   Progress running = progress.part(0.0, 0.6), counting = progress.part(0.6, 0.75),
            writing = progress.part(0.75, 1.0);
-  const ExperimentResult result = runExperiment(experiment, modelFamilies(), running);
+  const ExperimentResult result =
+      runExperiment(experiment, modelFamilies(), running, *context.ranks);
+  if (!context.ranks->first()) return;
   const report::ReportData data = report::reportOf(result, context.commandLine, counting);
   const report::ReportFiles files = report::writeReport(data, out, writing, {.pdf = pdf});
   progress.report(1.0, "written");
@@ -45,7 +47,8 @@ void addReportCommand(CLI::App& app, Context& context) {
   auto* command = addCommand(
       app, context, "report", "Run an experiment document and write its report",
       "marey report experiment.json --out report",
-      [o, &context] { runReport(readExperiment(o->experiment), o->out, o->pdf, context); });
+      [o, &context] { runReport(readExperiment(o->experiment), o->out, o->pdf, context); },
+      Processes::Many);
   command->add_option("EXPERIMENT", o->experiment, "Experiment document (JSON)")->required();
   command->add_option("--out", o->out, "Folder to write to")->required();
   command->add_flag("--pdf,!--no-pdf", o->pdf,

@@ -1,27 +1,26 @@
 // marey sample: many motions of one model along a path.
 #include <chrono>
+#include <cstdio>
 #include <memory>
 
 #include "families.h"
+#include "ranks/launch.h"
 
-#include "base/atomic_file.h"
 #include "base/memory.h"
 #include "cli/command.h"
 #include "cli/fit_report.h"
 #include "experiment/path_choice.h"
 #include "experiment/recipe.h"
-#include "io/clip_io.h"
+#include "experiment/sample_files.h"
 
 namespace marey::cli {
 namespace {
-
-/// Motions generated at once: bounds the memory, changes no result.
-constexpr int kBatch = 128;
 
 struct Options {
   std::string model, out, format = "bvh", start = "mean", weights = "float32";
   PathChoice path;
   int samples = 1;
+  bool resume = false;
   double temperature = 1.0, warmUp = 1.0;
 };
 
@@ -36,40 +35,51 @@ Json recipe(const Options& o, const MotionModel& model, const Context& context) 
   return out;
 }
 
-void run(Options& o, const Context& context) {
+/// What a failed run leaves behind, unless it had finished nothing.
+void tellOnFailure(const UnfinishedFolder& folder, Context& context) {
+  context.ranks->whenStopped([place = folder.place().string()] {
+    fmt::print(stderr, "marey: stopping; motions that are finished stay in {} for --resume\n",
+               place);
+  });
+  context.afterFailure = [folder]() -> std::string {
+    const size_t finished = folder.abandon();
+    if (finished == 0) return "";
+    return fmt::format(
+        " ({} of {} parts of {} motions are finished in {}: --resume goes on with it)", finished,
+        folder.run().parts, kMotionsOfPart, folder.place().string());
+  };
+}
+
+void run(Options& o, Context& context) {
   o.path.startFromClip = o.start == "clip";
   const auto model =
       loadModel(o.model, modelFamilies(), {.weights = weightPrecisionNamed(o.weights)});
   SampleRequest request = requestFor(*model, o.path);
+  request.samples = o.samples;
   request.seed = context.seed;
   request.temperature = o.temperature;
   request.warmUpS = o.warmUp;
-  StagedFolder folder(o.out);
+  SampleFilesRequest files{.sampling = request,
+                           .out = o.out,
+                           .format = o.format,
+                           .recipe = recipe(o, *model, context),
+                           .writers = context.threads > 0 ? context.threads : coresOfThisProcess(),
+                           .resume = o.resume};
   Progress progress = context.progress("sample");
-  Json names = Json::array();
-  FitReport fits;
   const auto begin = std::chrono::steady_clock::now();
-  for (int first = 0; first < o.samples; first += kBatch) {
-    request.firstSample = first;
-    request.samples = std::min(kBatch, o.samples - first);
-    Progress part = progress.part(static_cast<double>(first) / o.samples,
-                                  static_cast<double>(first + request.samples) / o.samples);
-    for (const Clip& clip : sampleClips(*model, request, part)) {
-      Json note = recipe(o, *model, context);
-      note["sample"] = clip.name;
-      const auto file = clip.name + "." + o.format;
-      io::WriteOptions write{.format = o.format};
-      write.recipe = note;
-      fits.add(io::writeClip(clip, folder.path() / file, write).fit);
-      names.push_back((std::filesystem::path(o.out) / file).string());
-    }
-  }
+  const SampleFiles written = writeSampleFiles(
+      *model, files, *context.ranks, progress,
+      [&context](const UnfinishedFolder& folder) { tellOnFailure(folder, context); });
+  if (!context.ranks->first()) return;
+  context.afterFailure = {};
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  folder.commit();
-  const double frames = static_cast<double>(o.samples) * static_cast<double>(request.path.size());
+  FitReport fits;
+  fits.add(written.fit);
+  const double frames =
+      static_cast<double>(written.sampled) * static_cast<double>(request.path.size());
   Json result = {
-      {"clips", names},
+      {"clips", written.clips},
       {"frames_per_s", frames / seconds},
       {"peak_memory_mb", peakMemoryMb()},
       {"seconds_each", static_cast<double>(request.path.size()) / model->info().features.fps}};
@@ -85,10 +95,10 @@ void run(Options& o, const Context& context) {
 
 void addSampleCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
-  auto* command =
-      addCommand(app, context, "sample", "Sample motions from a model along a path",
-                 "marey sample runs/small/best.marey --path preset:turn-left -n 20 --out samples",
-                 [o, &context] { run(*o, context); });
+  auto* command = addCommand(
+      app, context, "sample", "Sample motions from a model along a path",
+      "marey sample runs/small/best.marey --path preset:turn-left -n 20 --out samples",
+      [o, &context] { run(*o, context); }, Processes::Many);
   command->add_option("MODEL", o->model, "Model (.marey)")->required();
   command
       ->add_option("--path", o->path.path,
@@ -117,6 +127,8 @@ void addSampleCommand(CLI::App& app, Context& context) {
                    "Seconds generated and dropped after a start from the mean pose")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command->add_flag("--resume", o->resume,
+                    "Go on with a broken run of the same command (OUT.partial)");
   addWeightsOption(*command, o->weights);
   command->add_option("--format", o->format, "bvh, gltf, glb, npz or csv")
       ->check(CLI::IsMember({"bvh", "gltf", "glb", "npz", "csv"}))

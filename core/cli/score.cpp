@@ -1,11 +1,14 @@
 // marey score: log-likelihood of every frame of clips under a model.
 #include <cmath>
+#include <iterator>
 #include <memory>
+#include <span>
 
 #include "families.h"
 
 #include "cli/command.h"
 #include "cli/readers.h"
+#include "experiment/packed_motion.h"
 #include "model/scorer.h"
 
 namespace marey::cli {
@@ -23,6 +26,8 @@ constexpr size_t kTogether = 64;
 
 /// The rows of the result.
 struct Scores {
+  explicit Scores(bool wantJson) : json(wantJson) {}
+  bool json;  ///< else only the table is made: frame by frame is much
   Json clips = Json::array();
   std::string table = fmt::format("{:<44} {:>7} {:>12} {:>10} {:>8}\n", "clip", "frames",
                                   "nats/frame", "bits/dim", "|z|");
@@ -32,12 +37,13 @@ struct Scores {
     const auto count = static_cast<double>(score.latentNorm.size());
     double norm = 0.0;
     for (const double v : score.latentNorm) norm += v / count;
-    clips.push_back({{"name", score.name},
-                     {"first_frame", score.firstFrame},
-                     {"loglik_nats", score.loglikNats},
-                     {"mean_nats_per_frame", score.meanNatsPerFrame()},
-                     {"bits_per_dimension", score.bitsPerDimension},
-                     {"latent_norm", score.latentNorm}});
+    if (json)
+      clips.push_back({{"name", score.name},
+                       {"first_frame", score.firstFrame},
+                       {"loglik_nats", score.loglikNats},
+                       {"mean_nats_per_frame", score.meanNatsPerFrame()},
+                       {"bits_per_dimension", score.bitsPerDimension},
+                       {"latent_norm", score.latentNorm}});
     table += fmt::format("{:<44} {:>7} {:>12.2f} {:>10.3f} {:>8.2f}\n", score.name,
                          score.loglikNats.size(), score.meanNatsPerFrame(), score.bitsPerDimension,
                          norm);
@@ -46,22 +52,49 @@ struct Scores {
   }
 };
 
-Scores scoreFiles(const Options& o, const MotionModel& model, Progress& progress) {
-  const auto files = expandInputs(o.clips);
-  Scores out;
+/// The scores of files [first, last), packed file by file. Clips are read as they are scored.
+std::vector<std::string> scoreShare(const Options& o, const MotionModel& model,
+                                    std::span<const std::filesystem::path> files,
+                                    Progress& progress) {
+  std::vector<std::string> out;
   std::vector<Clip> waiting;
+  std::vector<size_t> clipsOf;  // of every file that waits
   double done = 0.0;
   for (size_t i = 0; i < files.size(); ++i) {
     progress.throwIfCancelled();
-    for (Clip& clip : io::readClips(files[i], o.read)) waiting.push_back(std::move(clip));
+    std::vector<Clip> clips = io::readClips(files[i], o.read);
+    clipsOf.push_back(clips.size());
+    std::move(clips.begin(), clips.end(), std::back_inserter(waiting));
     if (waiting.size() < kTogether && i + 1 < files.size()) continue;
     const double share = static_cast<double>(i + 1) / static_cast<double>(files.size());
     Progress part = progress.part(done, share);
-    for (const ClipScore& score : scoreClips(model, waiting, o.standardised, part)) out.add(score);
+    const auto scores = scoreClips(model, waiting, o.standardised, part);
+    auto next = scores.begin();
+    for (const size_t count : clipsOf) {
+      Packer packer;
+      for (size_t k = 0; k < count; ++k) pack(*next++, packer);
+      out.push_back(packer.take());
+    }
     waiting.clear();
+    clipsOf.clear();
     done = share;
     progress.report(done, "scoring");
   }
+  return out;
+}
+
+Scores scoreFiles(const Options& o, const MotionModel& model, const Context& context) {
+  Progress progress = context.progress("score");
+  const auto files = expandInputs(o.clips);
+  const auto packed = context.ranks->gather(
+      files.size(),
+      [&](size_t first, size_t last, Progress& share) {
+        return scoreShare(o, model, std::span(files).subspan(first, last - first), share);
+      },
+      progress);
+  Scores out(context.json);
+  for (const std::string& file : packed)
+    for (Unpacker bytes(file); !bytes.done();) out.add(unpackScore(bytes));
   return out;
 }
 
@@ -70,11 +103,12 @@ void run(const Options& o, const Context& context) {
       loadModel(o.model, modelFamilies(), {.weights = weightPrecisionNamed(o.weights)});
   // A density per metre becomes one per centimetre, the unit of the tables.
   const double toCentimetres = model->info().poseDim * std::log(100.0);
-  Progress progress = context.progress("score");
-  auto [clips, table, sum, frames] = scoreFiles(o, *model, progress);
-  const double mean = sum / frames;
-  Json result = {{"clips", clips},
-                 {"frames", frames},
+  Scores scores = scoreFiles(o, *model, context);
+  if (!context.ranks->first()) return;
+  const double mean = scores.sum / scores.frames;
+  std::string& table = scores.table;
+  Json result = {{"clips", std::move(scores.clips)},
+                 {"frames", scores.frames},
                  {"mean_nats_per_frame", mean},
                  {"density", o.standardised ? "standardised poses" : "poses in metres"}};
   table += fmt::format("all: {:.2f} nats per frame ({})", mean,
@@ -98,10 +132,10 @@ void run(const Options& o, const Context& context) {
 
 void addScoreCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
-  auto* command =
-      addCommand(app, context, "score", "Log-likelihood per frame of clips under a model",
-                 "marey score runs/small/best.marey @clips/test.txt --json",
-                 [o, &context] { run(*o, context); });
+  auto* command = addCommand(
+      app, context, "score", "Log-likelihood per frame of clips under a model",
+      "marey score runs/small/best.marey @clips/test.txt --json",
+      [o, &context] { run(*o, context); }, Processes::Many);
   command->add_option("MODEL", o->model, "Model (.marey)")->required();
   command->add_option("CLIP", o->clips, "Files, folders or @LIST")->required();
   command->add_flag("--standardised", o->standardised,

@@ -56,10 +56,11 @@ void run(Options& o, const Context& context) {
 
 void addTrainCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
-  auto* command = addCommand(app, context, "train", "Train a model by maximum likelihood",
-                             "marey train resources/models/moglow-small.json --data walk.marey "
-                             "--out runs/small --minutes 60",
-                             [o, &context] { run(*o, context); });
+  auto* command = addCommand(
+      app, context, "train", "Train a model by maximum likelihood",
+      "marey train resources/models/moglow-small.json --data walk.marey "
+      "--out runs/small --minutes 60",
+      [o, &context] { run(*o, context); }, Processes::Own);
   command->add_option("CONFIG", o->config, "Hyper-parameters (JSON)")->required();
   command->add_option("--data", o->data, "Data set made by `marey prepare`")->required();
   command->add_option("--out", o->request.run, "Folder of the run")->required();

@@ -1,12 +1,13 @@
 #include "experiment/run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
 #include "base/error.h"
+#include "experiment/packed_motion.h"
 #include "model/sampler.h"
 #include "stats/footsteps.h"
 
@@ -15,12 +16,8 @@ namespace {
 
 /// Samples of different stages of one experiment take different latents.
 constexpr int kHeldOutSampleBase = 1000000;
-/// Natural clips whose control is followed in one batch.
-constexpr size_t kClipsTogether = 64;
-
-double seconds(std::chrono::steady_clock::time_point from) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
-}
+/// Motions that are sampled in one batch, or natural clips whose control is followed in one.
+constexpr size_t kTogether = 64;
 
 void checkRate(const MotionModel& model, const Experiment& experiment) {
   if (std::abs(model.info().features.fps - experiment.fps) > 1e-6)
@@ -30,9 +27,34 @@ void checkRate(const MotionModel& model, const Experiment& experiment) {
         "{}", experiment.fps);
 }
 
+/// Numbers 0 .. count - 1 by rising `length`, each rank's share with short and long ones.
+std::vector<size_t> dealtByLength(size_t count, int ranks,
+                                  const std::function<size_t(size_t)>& length) {
+  std::vector<size_t> sorted(count), out;
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](size_t a, size_t b) { return length(a) < length(b); });
+  for (size_t r = 0; r < static_cast<size_t>(ranks); ++r)
+    for (size_t i = r; i < count; i += static_cast<size_t>(ranks)) out.push_back(sorted[i]);
+  return out;
+}
+
+/// Results that were gathered in the order of `dealt`, by number.
+std::vector<std::string> byNumber(const std::vector<size_t>& dealt,
+                                  std::vector<std::string> gathered) {
+  std::vector<std::string> out(gathered.size());
+  for (size_t i = 0; i < gathered.size(); ++i) out[dealt[i]] = std::move(gathered[i]);
+  return out;
+}
+
+FeatureSequence sequenceOf(const SampleRequest& request, int sample, Matrix poses) {
+  return {fmt::format("sample_{:03}", request.firstSample + sample), std::move(poses),
+          controlFromTrajectory(request.path), request.path.front()};
+}
+
 /// Along each natural clip's own control. Clips of similar length go together.
 void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vector<Clip>& natural,
-                   SystemResult& out, Progress& progress) {
+                   SystemResult& out, Progress& progress, Ranks& ranks) {
   std::vector<SampleRequest> requests;
   for (size_t i = 0; i < natural.size(); ++i) {
     requests.push_back(requestAlongClip(model, natural[i], false));
@@ -41,69 +63,106 @@ void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vec
     requests.back().temperature = out.temperature;
     requests.back().firstSample = kHeldOutSampleBase + static_cast<int>(i) * e.heldOutSamples;
   }
-  std::vector<size_t> order(natural.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-    return requests[a].path.size() < requests[b].path.size();
-  });
-  std::vector<std::vector<FeatureSequence>> sampled(natural.size());
-  double frames = 0.0;
-  const auto begin = std::chrono::steady_clock::now();
-  for (size_t first = 0; first < order.size(); first += kClipsTogether) {
-    const size_t last = std::min(first + kClipsTogether, order.size());
-    std::vector<SampleRequest> batch;
-    for (size_t i = first; i < last; ++i) batch.push_back(requests[order[i]]);
-    Progress part = progress.part(static_cast<double>(first) / static_cast<double>(order.size()),
-                                  static_cast<double>(last) / static_cast<double>(order.size()));
-    auto results = sampleSequences(model, batch, part);
-    for (size_t i = first; i < last; ++i) {
-      frames += static_cast<double>(e.heldOutSamples) *
-                static_cast<double>(requests[order[i]].path.size());
-      sampled[order[i]] = std::move(results[i - first]);
+  const auto dealt = dealtByLength(natural.size(), ranks.size(),
+                                   [&](size_t i) { return requests[i].path.size(); });
+  SamplingPace pace;
+  const auto share = [&](size_t begin, size_t end, Progress& own) {
+    std::vector<std::string> packed;
+    const auto all = static_cast<double>(end - begin);
+    for (size_t first = begin; first < end; first += kTogether) {
+      const size_t last = std::min(first + kTogether, end);
+      std::vector<SampleRequest> batch;
+      for (size_t i = first; i < last; ++i) batch.push_back(requests[dealt[i]]);
+      Progress part = own.part(static_cast<double>(first - begin) / all,
+                               static_cast<double>(last - begin) / all);
+      for (auto& result : packedSamples(model, batch, pace, part))
+        packed.push_back(std::move(result));
     }
-  }
-  out.framesPerSecond = frames / seconds(begin);
-  std::vector<FeatureSequence> scored;
-  for (size_t i = 0; i < natural.size(); ++i)
-    for (const FeatureSequence& sequence : sampled[i]) {
-      if (sequence.frameCount() > model.info().context) scored.push_back(sequence);
+    return packed;
+  };
+  const auto results = byNumber(dealt, ranks.gather(natural.size(), share, progress));
+  // The other processes are taken to be as fast as the first one.
+  out.framesPerSecond = ranks.size() * pace.frames / pace.seconds;
+  for (size_t i = 0; i < results.size(); ++i) {
+    int sample = 0;
+    for (ScoredSequence& scored : unpackSamples(results[i])) {
+      const auto sequence = sequenceOf(requests[i], sample++, std::move(scored.poses));
+      if (scored.score) out.heldOutScores.push_back(std::move(*scored.score));
       out.heldOut.push_back(sampledClip(model, sequence));
       out.heldOut.back().name = natural[i].name + "/" + sequence.name;
       out.heldOutPaths.push_back(requests[i].path);
     }
-  Progress scoring = progress.part(1.0, 1.0);
-  out.heldOutScores = scoreSequences(model, scored, false, scoring);
+  }
 }
 
+/// The motions of all paths are numbered one after the other, so that few along many paths are
+/// dealt out as well as many along one.
 void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& out,
-                 Progress& progress) {
-  for (size_t i = 0; i < e.paths.size(); ++i) {
-    const ExperimentPath& path = e.paths[i];
-    Progress part = progress.part(static_cast<double>(i) / static_cast<double>(e.paths.size()),
-                                  static_cast<double>(i + 1) / static_cast<double>(e.paths.size()));
-    SampleRecipe recipe{.system = {out.name, {}, out.temperature},
-                        .path = path,
-                        .samples = e.samples,
-                        .seed = e.seed,
-                        .fps = e.fps,
-                        .folder = e.folder};
-    SampleSet set = drawSampleSet(model, recipe, part);
-    PathSamples& samples = out.paths[path.name];
-    samples.wanted = std::move(set.wanted);
-    for (SampledMotion& motion : set.motions) {
-      samples.scores.push_back(std::move(motion.score));
-      samples.clips.push_back(std::move(motion.clip));
+                 Progress& progress, Ranks& ranks) {
+  std::vector<SampleRequest> requests;
+  for (const ExperimentPath& path : e.paths)
+    requests.push_back(requestOf(model, {.system = {out.name, {}, out.temperature},
+                                         .path = path,
+                                         .samples = 1,
+                                         .seed = e.seed,
+                                         .fps = e.fps,
+                                         .folder = e.folder}));
+  const auto ofPath = static_cast<size_t>(e.samples);
+  SamplingPace pace;
+  const auto share = [&](size_t begin, size_t end, Progress& own) {
+    std::vector<std::string> packed;
+    for (size_t first = begin; first < end;) {
+      const size_t path = first / ofPath;
+      const size_t last = std::min({end, (path + 1) * ofPath, first + kTogether});
+      std::vector<SampleRequest> batch(last - first, requests[path]);
+      for (size_t i = first; i < last; ++i)
+        batch[i - first].firstSample = static_cast<int>(i - path * ofPath);
+      const auto all = static_cast<double>(end - begin);
+      Progress part = own.part(static_cast<double>(first - begin) / all,
+                               static_cast<double>(last - begin) / all);
+      for (auto& result : packedSamples(model, batch, pace, part))
+        packed.push_back(std::move(result));
+      first = last;
+    }
+    return packed;
+  };
+  const auto results = ranks.gather(ofPath * e.paths.size(), share, progress);
+  for (size_t i = 0; i < results.size(); ++i) {
+    SampleRequest& request = requests[i / ofPath];
+    PathSamples& samples = out.paths[e.paths[i / ofPath].name];
+    samples.wanted = request.path;
+    for (ScoredSequence& scored : unpackSamples(results[i])) {
+      samples.scores.push_back(scored.score.value_or(ClipScore{}));
+      samples.clips.push_back(std::make_shared<const Clip>(sampledClip(
+          model, sequenceOf(request, static_cast<int>(i % ofPath), std::move(scored.poses)))));
     }
   }
 }
 
 void scoreNatural(const MotionModel& model, const std::vector<Clip>& natural, SystemResult& out,
-                  Progress& progress) {
-  std::vector<Clip> clips;
+                  Progress& progress, Ranks& ranks) {
+  std::vector<const Clip*> clips;
   for (const Clip& clip : natural)
     // A clip that is all context has no frame to score.
-    if (clip.frameCount() > model.info().context) clips.push_back(clip);
-  out.naturalScores = scoreClips(model, clips, false, progress);
+    if (clip.frameCount() > model.info().context) clips.push_back(&clip);
+  const auto dealt = dealtByLength(clips.size(), ranks.size(), [&](size_t i) {
+    return static_cast<size_t>(clips[i]->frameCount());
+  });
+  const auto share = [&](size_t begin, size_t end, Progress& own) {
+    std::vector<Clip> mine;
+    for (size_t i = begin; i < end; ++i) mine.push_back(*clips[dealt[i]]);
+    std::vector<std::string> packed;
+    for (const ClipScore& score : scoreClips(model, mine, false, own)) {
+      Packer packer;
+      pack(score, packer);
+      packed.push_back(packer.take());
+    }
+    return packed;
+  };
+  for (const auto& packed : byNumber(dealt, ranks.gather(clips.size(), share, progress))) {
+    Unpacker bytes(packed);
+    out.naturalScores.push_back(unpackScore(bytes));
+  }
   double sum = 0.0, frames = 0.0;
   for (const ClipScore& score : out.naturalScores) {
     for (const double nats : score.loglikNats) sum += nats;
@@ -123,6 +182,12 @@ double floorOf(const ModelInfo& info) {
 
 ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
                                Progress& progress) {
+  Ranks one;
+  return runExperiment(experiment, families, progress, one);
+}
+
+ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
+                               Progress& progress, Ranks& ranks) {
   if (experiment.natural.empty())
     throw InputError({.path = experiment.title, .item = "key 'natural'"},
                      "at least one source of clips", "none");
@@ -140,10 +205,10 @@ ExperimentResult runExperiment(const Experiment& experiment, std::span<const Mod
     const double from = 0.05 + share * static_cast<double>(i);
     Progress scoring = progress.part(from, from), heldOut = progress.part(from, from + 0.5 * share),
              paths = progress.part(from + 0.5 * share, from + share);
-    scoreNatural(*model, out.natural, result, scoring);
+    scoreNatural(*model, out.natural, result, scoring, ranks);
     if (experiment.heldOutSamples > 0)
-      sampleHeldOut(*model, experiment, out.natural, result, heldOut);
-    samplePaths(*model, experiment, result, paths);
+      sampleHeldOut(*model, experiment, out.natural, result, heldOut, ranks);
+    samplePaths(*model, experiment, result, paths, ranks);
     result.linearGaussianNats = floorOf(result.info);
     out.systems.push_back(std::move(result));
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/ranks.h"
 #include "experiment/sample_set.h"
 #include "model/motion_model.h"
 #include "model/scorer.h"
@@ -57,5 +58,9 @@ NaturalMotion readableNatural(const Experiment& experiment, Progress& progress);
 /// there is no natural motion), FileError, NumericError, CancelledError.
 ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
                                Progress& progress);
+/// The same with sampling and scoring dealt out over `ranks`; the result is whole at the first one
+/// and of no use elsewhere. Motions and scores do not depend on their number.
+ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
+                               Progress& progress, Ranks& ranks);
 
 }  // namespace marey

@@ -78,17 +78,23 @@ Json toJson(const SampleRecipe& recipe) {
   return out;
 }
 
-SampleSet drawSampleSet(const MotionModel& model, const SampleRecipe& recipe, Progress& progress,
-                        int chunk, const MotionSink& sink) {
-  if (recipe.steering) return drawSteered(model, recipe, progress, sink);
+SampleRequest requestOf(const MotionModel& model, const SampleRecipe& recipe) {
   SampleRequest request =
       requestFor(model, {.path = recipe.path.path.empty() ? recipe.path.name : recipe.path.path,
                          .wayPoints = recipe.path.wayPoints,
                          .seconds = recipe.path.seconds,
                          .startFromClip = recipe.path.startFromClip,
                          .folder = recipe.folder});
+  request.samples = recipe.samples;
   request.seed = recipe.seed;
   request.temperature = recipe.system.temperature;
+  return request;
+}
+
+SampleSet drawSampleSet(const MotionModel& model, const SampleRecipe& recipe, Progress& progress,
+                        int chunk, const MotionSink& sink) {
+  if (recipe.steering) return drawSteered(model, recipe, progress, sink);
+  SampleRequest request = requestOf(model, recipe);
   SampleSet out{.recipe = recipe, .modelHash = model.info().hash, .wanted = request.path};
   int together = chunk > 0 ? chunk : recipe.samples;
   double spentS = 0.0;

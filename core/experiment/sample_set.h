@@ -47,6 +47,9 @@ struct SampleSet {
 using MotionSink =
     std::function<void(const std::vector<RootFrame>& wanted, std::vector<SampledMotion> motions)>;
 
+/// What the sampler is asked for. Throws UsageError or InputError.
+SampleRequest requestOf(const MotionModel& model, const SampleRecipe& recipe);
+
 /// Draws a recipe; `chunk` motions advance together at first (0: all), then twice as many each time
 /// up to 64, since a large batch is faster, and are handed to `sink`, where there is one. Motions
 /// do not depend on the chunk. Throws UsageError, InputError, NumericError and CancelledError.

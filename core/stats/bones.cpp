@@ -30,15 +30,22 @@ std::vector<double> skeletonBoneLengths(const Skeleton& skeleton) {
   return out;
 }
 
+std::vector<double> boneLengthSums(const Clip& clip) {
+  const auto bones = clip.skeleton->bones();
+  std::vector<double> sums(bones.size(), 0.0);
+  for (int t = 0; t < clip.frameCount(); ++t)
+    for (size_t b = 0; b < bones.size(); ++b) sums[b] += boneLength(clip, t, bones[b]);
+  return sums;
+}
+
 std::vector<double> meanBoneLengths(const std::vector<Clip>& clips) {
   requireSameJoints(clips);
-  const auto bones = clips.front().skeleton->bones();
-  std::vector<double> sums(bones.size(), 0.0);
+  std::vector<double> sums(clips.front().skeleton->bones().size(), 0.0);
   double frames = 0.0;
   for (const Clip& clip : clips) {
     frames += clip.frameCount();
-    for (int t = 0; t < clip.frameCount(); ++t)
-      for (size_t b = 0; b < bones.size(); ++b) sums[b] += boneLength(clip, t, bones[b]);
+    const auto own = boneLengthSums(clip);
+    for (size_t b = 0; b < sums.size(); ++b) sums[b] += own[b];
   }
   for (double& sum : sums) sum /= frames;
   return sums;

@@ -9,6 +9,8 @@ namespace marey::stats {
 
 /// Rest lengths of Skeleton::bones(), metres; those of offset zero are zero.
 std::vector<double> skeletonBoneLengths(const Skeleton& skeleton);
+/// Of every bone the sum of its lengths over the frames of a clip, metres.
+std::vector<double> boneLengthSums(const Clip& clip);
 /// Mean length of every bone over all frames of all clips, metres.
 /// Throws InputError on no clips or clips of different joints.
 std::vector<double> meanBoneLengths(const std::vector<Clip>& clips);

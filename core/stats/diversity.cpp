@@ -11,13 +11,6 @@
 namespace marey::stats {
 namespace {
 
-/// Root-frame positions, frames x (3 joints).
-Matrix rootFramePoses(const Clip& clip) {
-  FeatureSpec spec;
-  spec.fps = clip.fps;
-  return extractFeatures(clip, spec).pose;
-}
-
 double poseDistance(const Matrix& a, const Matrix& b, int maxFrames) {
   const auto frames = std::min(a.rows(), b.rows());
   const auto compared = std::min<Eigen::Index>(frames, maxFrames);
@@ -31,6 +24,12 @@ double poseDistance(const Matrix& a, const Matrix& b, int maxFrames) {
 }
 
 }  // namespace
+
+Matrix rootFramePoses(const Clip& clip) {
+  FeatureSpec spec;
+  spec.fps = clip.fps;
+  return extractFeatures(clip, spec).pose;
+}
 
 std::vector<int> spreadIndices(int count, int limit) {
   std::vector<int> out;
@@ -51,7 +50,11 @@ std::vector<double> pairDistances(const std::vector<Clip>& clips, int maxFrames)
                  "{}", clip.fps);
     poses.push_back(rootFramePoses(clip));
   }
-  const size_t n = clips.size();
+  return pairDistances(poses, maxFrames);
+}
+
+std::vector<double> pairDistances(const std::vector<Matrix>& poses, int maxFrames) {
+  const size_t n = poses.size();
   std::vector<double> out(n * n, 0.0);
   for (size_t i = 0; i < n; ++i)
     for (size_t j = i + 1; j < n; ++j)

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "motion/clip.h"
+#include "motion/features.h"
 
 namespace marey::stats {
 
@@ -12,6 +13,11 @@ namespace marey::stats {
 /// clips x clips, zero on the diagonal. At most `maxFrames` frames, evenly spread, are compared.
 /// Throws InputError on clips of different joints or rates, or without left and right hip.
 std::vector<double> pairDistances(const std::vector<Clip>& clips, int maxFrames = 100);
+
+/// The same of root-frame poses, [frame, 3 joints], as rootFramePoses gives them.
+std::vector<double> pairDistances(const std::vector<Matrix>& poses, int maxFrames = 100);
+/// Throws InputError on a clip without left and right hip.
+Matrix rootFramePoses(const Clip& clip);
 
 /// Mean of the pair distances with clip i counted weights[i] times (a clip and its own copy are no
 /// pair), metres; NaN where there is no pair.

@@ -63,7 +63,8 @@ bool isDefined(const Skeleton& skeleton, Quantity quantity, int joint) {
   return skeleton.parents[joint] >= 0 && firstChild(skeleton, joint) >= 0;
 }
 
-std::vector<std::vector<double>> jointSamples(const Clip& clip, Quantity quantity, int stride) {
+std::vector<std::vector<double>> jointSamples(const Clip& clip, Quantity quantity, int stride,
+                                              int phase) {
   std::vector<std::vector<double>> out(static_cast<size_t>(clip.jointCount()));
   std::vector<RootFrame> roots;
   if (quantity == Quantity::Sideways || quantity == Quantity::Forward)
@@ -71,7 +72,7 @@ std::vector<std::vector<double>> jointSamples(const Clip& clip, Quantity quantit
   const int first = quantity == Quantity::Speed ? 1 : 0;
   for (int joint = 0; joint < clip.jointCount(); ++joint) {
     if (!isDefined(*clip.skeleton, quantity, joint)) continue;
-    for (int t = first; t < clip.frameCount(); t += std::max(1, stride)) {
+    for (int t = first + phase; t < clip.frameCount(); t += std::max(1, stride)) {
       double value = 0.0;
       if (quantity == Quantity::Speed)
         value = speedCmS(clip, t, joint);

@@ -24,9 +24,11 @@ const std::vector<Quantity>& allQuantities();
 bool isDefined(const Skeleton& skeleton, Quantity quantity, int joint);
 
 /// The quantity of every joint of a clip: samples[joint][frame], in the unit of textOf; empty
-/// where it is not defined. Every `stride`-th frame. Throws InputError where Sideways or Forward is
+/// where it is not defined. Every `stride`-th frame, from frame `phase` of those
+/// that have a value. Throws InputError where Sideways or Forward is
 /// asked for of a skeleton without left and right hip.
-std::vector<std::vector<double>> jointSamples(const Clip& clip, Quantity quantity, int stride = 1);
+std::vector<std::vector<double>> jointSamples(const Clip& clip, Quantity quantity, int stride = 1,
+                                              int phase = 0);
 
 /// The samples of one joint over many clips, for a plot. Throws InputError where it is not defined.
 std::vector<double> pooledSamples(const std::vector<Clip>& clips, Quantity quantity, int joint);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/packing.h"
 #include "motion/roles.h"
 #include "stats/bones.h"
 #include "stats/diversity.h"
@@ -17,54 +18,65 @@ namespace {
 /// Clips whose pairs are compared for diversity: 19,900 pairs.
 constexpr int kDiversityClips = 200;
 
-bool always(const StatisticInput&) {
+bool always(const StatisticSetting&) {
   return true;
 }
 
-bool hasBones(const StatisticInput& input) {
-  return input.clips->front().jointCount() > 1;
+bool hasBones(const StatisticSetting& setting) {
+  return setting.skeleton->jointCount() > 1;
 }
 
 /// Reference lengths of a clip: of natural motion, else of its own skeleton; a skeleton without
 /// offsets (positions only) gives none, and the mean of the clips serves.
-std::function<std::vector<double>(const Clip&)> boneReference(const StatisticInput& input) {
-  const auto rest = skeletonBoneLengths(*input.clips->front().skeleton);
+std::vector<double> boneReference(const Clip& clip, const StatisticSetting& setting) {
+  const auto rest = skeletonBoneLengths(*setting.skeleton);
   const bool known = std::any_of(rest.begin(), rest.end(), [](double m) { return m > 0.0; });
-  if (!input.natural && known)
-    return [](const Clip& clip) { return skeletonBoneLengths(*clip.skeleton); };
-  auto mean = meanBoneLengths(input.natural ? *input.natural : *input.clips);
-  return [mean = std::move(mean)](const Clip&) { return std::vector<double>(mean); };
+  if (!setting.natural && known) return skeletonBoneLengths(*clip.skeleton);
+  return setting.meanBoneLengths;
 }
 
-WeightedValue boneError(const StatisticInput& input) {
-  const auto reference = boneReference(input);
-  return weightedRatio(
-      *input.clips,
-      [&](const Clip& clip) {
-        const auto lengths = reference(clip);
-        return RatioPart{squaredBoneError(clip, lengths), static_cast<double>(clip.frameCount()) *
-                                                              static_cast<double>(lengths.size())};
-      },
-      [](double square) { return 100.0 * std::sqrt(square); });
+RatioPart boneError(const Clip& clip, size_t, const StatisticSetting& setting) {
+  const auto lengths = boneReference(clip, setting);
+  return {squaredBoneError(clip, lengths),
+          static_cast<double>(clip.frameCount()) * static_cast<double>(lengths.size())};
 }
 
-WeightedValue meanJerk(const StatisticInput& input) {
-  return weightedRatio(*input.clips, [](const Clip& clip) {
-    const JerkTally tally = jerk(clip);
-    return RatioPart{tally.sum, tally.count};
-  });
+RatioPart jerkPart(const Clip& clip, size_t, const StatisticSetting&) {
+  const JerkTally tally = jerk(clip);
+  return {tally.sum, tally.count};
 }
 
-bool canBeDiverse(const StatisticInput& input) {
-  return input.clips->size() > 1 && rolesOf(*input.clips->front().skeleton).hasFacing();
+bool canBeDiverse(const StatisticSetting& setting) {
+  return setting.own.clips > 1 && rolesOf(*setting.skeleton).hasFacing();
 }
 
-WeightedValue diversity(const StatisticInput& input) {
-  const auto kept = spreadIndices(static_cast<int>(input.clips->size()), kDiversityClips);
-  std::vector<Clip> clips;
-  clips.reserve(kept.size());
-  for (int i : kept) clips.push_back((*input.clips)[i]);
-  auto distances = std::make_shared<const std::vector<double>>(pairDistances(clips));
+std::vector<int> diverseClips(const StatisticSetting& setting) {
+  return spreadIndices(static_cast<int>(setting.own.clips), kDiversityClips);
+}
+
+/// Poses of the clips that pairs are made of.
+ClipPart posesPart(const Clip& clip, size_t index, const StatisticSetting& setting) {
+  const auto kept = diverseClips(setting);
+  if (!std::binary_search(kept.begin(), kept.end(), static_cast<int>(index))) return {};
+  const Matrix poses = rootFramePoses(clip);
+  Packer packer;
+  packer.add(static_cast<long>(poses.rows()))
+      .add(std::span<const float>(poses.data(), static_cast<size_t>(poses.size())));
+  return packer.take();
+}
+
+WeightedValue diversity(const std::vector<ClipPart>& parts, const std::vector<ClipPart>&,
+                        const StatisticSetting& setting) {
+  const auto kept = diverseClips(setting);
+  std::vector<Matrix> poses;
+  for (const int i : kept) {
+    Unpacker bytes(parts[static_cast<size_t>(i)]);
+    const long rows = bytes.number<long>();
+    const auto values = bytes.list<float>();
+    poses.emplace_back(Eigen::Map<const Matrix>(
+        values.data(), rows, static_cast<long>(values.size()) / std::max(1L, rows)));
+  }
+  auto distances = std::make_shared<const std::vector<double>>(pairDistances(poses));
   return [=](const Weights& weights) {
     std::vector<int> own;
     own.reserve(kept.size());
@@ -73,27 +85,15 @@ WeightedValue diversity(const StatisticInput& input) {
   };
 }
 
-bool hasWanted(const StatisticInput& input) {
-  return input.wanted && rolesOf(*input.clips->front().skeleton).hasFacing();
+bool hasWanted(const StatisticSetting& setting) {
+  return setting.wanted && rolesOf(*setting.skeleton).hasFacing();
 }
 
-WeightedValue meanPathError(const StatisticInput& input) {
-  std::vector<double> errors;
-  for (size_t i = 0; i < input.clips->size(); ++i) {
-    const Clip& clip = (*input.clips)[i];
-    FeatureSpec spec;
-    spec.fps = clip.fps;
-    errors.push_back(100.0 * pathError(rootTrajectory(clip, spec), (*input.wanted)[i]).meanM);
-  }
-  return [errors](const Weights& weights) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (size_t i = 0; i < errors.size(); ++i) {
-      sum += weights.clips[i] * errors[i];
-      count += weights.clips[i];
-    }
-    return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
-  };
+/// A mean over clips, whatever their length.
+RatioPart pathErrorPart(const Clip& clip, size_t index, const StatisticSetting& setting) {
+  FeatureSpec spec;
+  spec.fps = clip.fps;
+  return {100.0 * pathError(rootTrajectory(clip, spec), (*setting.wanted)[index]).meanM, 1.0};
 }
 
 std::vector<Statistic> bodyStatistics() {
@@ -101,17 +101,18 @@ std::vector<Statistic> bodyStatistics() {
       {"bone_length_rmse", "cm",
        "Root mean square deviation of bone lengths over bones and frames from their reference: the "
        "mean of natural motion, else the clip's skeleton.",
-       "Henter, Alexanderson, Beskow 2020 (MoGlow), Sec. 5.3", false, hasBones, boneError},
+       "Henter, Alexanderson, Beskow 2020 (MoGlow), Sec. 5.3", false, hasBones,
+       ratioRule(boneError), combineRatio([](double square) { return 100.0 * std::sqrt(square); })},
       {"jerk", "m/s^3", "Mean norm of the third derivative of joint positions, per second.",
-       "Flash and Hogan 1985", false, always, meanJerk},
+       "Flash and Hogan 1985", false, always, ratioRule(jerkPart), combineRatio()},
       {"diversity", "cm",
        "Mean over pairs of clips and equal times of the root mean square joint distance in the "
-       "root frame.",
+       "root frame (of more than 200 clips 200, evenly spread).",
        "Yuan and Kitani 2020 (DLow, average pairwise distance), in the root frame", false,
-       canBeDiverse, diversity},
+       canBeDiverse, std::make_shared<const PartRule>(PartRule{posesPart}), diversity},
       {"path_error", "cm",
        "Mean floor distance of the root trajectory from the wanted one, mean over clips.", "Marey",
-       false, hasWanted, meanPathError},
+       false, hasWanted, ratioRule(pathErrorPart), combineRatio()},
   };
 }
 
@@ -124,12 +125,26 @@ std::vector<Statistic> buildRegistry() {
 
 }  // namespace
 
-WeightedValue weightedRatio(const std::vector<Clip>& clips,
-                            const std::function<RatioPart(const Clip&)>& part,
+std::shared_ptr<const PartRule> ratioRule(
+    std::function<RatioPart(const Clip&, size_t, const StatisticSetting&)> part) {
+  return std::make_shared<const PartRule>(PartRule{
+      [part = std::move(part)](const Clip& clip, size_t index, const StatisticSetting& setting) {
+        const RatioPart ratio = part(clip, index, setting);
+        Packer packer;
+        packer.add(ratio.sum).add(ratio.count);
+        return packer.take();
+      }});
+}
+
+WeightedValue weightedRatio(const std::vector<ClipPart>& packed,
                             const std::function<double(double)>& finish) {
   std::vector<RatioPart> parts;
-  parts.reserve(clips.size());
-  for (const Clip& clip : clips) parts.push_back(part(clip));
+  parts.reserve(packed.size());
+  for (const ClipPart& part : packed) {
+    Unpacker bytes(part);
+    const double sum = bytes.number<double>();
+    parts.push_back({sum, bytes.number<double>()});
+  }
   return [parts, finish](const Weights& weights) {
     double sum = 0.0;
     double count = 0.0;
@@ -140,6 +155,14 @@ WeightedValue weightedRatio(const std::vector<Clip>& clips,
     if (count == 0.0) return std::numeric_limits<double>::quiet_NaN();
     return finish ? finish(sum / count) : sum / count;
   };
+}
+
+std::function<WeightedValue(const std::vector<ClipPart>&, const std::vector<ClipPart>&,
+                            const StatisticSetting&)>
+combineRatio(std::function<double(double)> finish) {
+  return
+      [finish = std::move(finish)](const std::vector<ClipPart>& own, const std::vector<ClipPart>&,
+                                   const StatisticSetting&) { return weightedRatio(own, finish); };
 }
 
 const std::vector<Statistic>& allStatistics() {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/packing.h"
 #include "motion/roles.h"
 #include "stats/joint_samples.h"
 #include "stats/sample_distance.h"
@@ -14,20 +15,29 @@ namespace {
 /// Frames of a set that enter a distribution; beyond it every k-th frame does.
 constexpr double kFrameLimit = 5000.0;
 
-int strideFor(const std::vector<Clip>& clips) {
-  double frames = 0.0;
-  for (const Clip& clip : clips) frames += clip.frameCount();
-  return std::max(1, static_cast<int>(std::ceil(frames / kFrameLimit)));
+/// A set with more frames takes other frames of every clip: with a stride beyond the length of
+/// clips only their first ones would count.
+constexpr double kLongSet = 100000.0;
+
+/// The samples of every quantity and joint, one after the other.
+ClipPart samplesPart(const Clip& clip, size_t index, const SetFacts& set,
+                     const std::vector<Quantity>& quantities) {
+  const int stride = std::max(1, static_cast<int>(std::ceil(set.frames / kFrameLimit)));
+  const int phase =
+      set.frames > kLongSet ? static_cast<int>(index % static_cast<size_t>(stride)) : 0;
+  Packer packer;
+  for (const Quantity quantity : quantities)
+    for (const auto& samples : jointSamples(clip, quantity, stride, phase)) packer.add(samples);
+  return packer.take();
 }
 
-/// samples[joint][clip]
-std::vector<std::vector<std::vector<double>>> samplesByJoint(const std::vector<Clip>& clips,
-                                                             Quantity quantity) {
-  const int stride = strideFor(clips);
-  std::vector<std::vector<std::vector<double>>> out(clips.front().jointCount());
-  for (const Clip& clip : clips) {
-    auto samples = jointSamples(clip, quantity, stride);
-    for (size_t j = 0; j < samples.size(); ++j) out[j].push_back(std::move(samples[j]));
+/// samples[quantity and joint][clip]
+std::vector<std::vector<std::vector<double>>> samplesByJoint(const std::vector<ClipPart>& parts,
+                                                             size_t lists) {
+  std::vector<std::vector<std::vector<double>>> out(lists);
+  for (const ClipPart& part : parts) {
+    Unpacker bytes(part);
+    for (auto& list : out) list.push_back(bytes.list<double>());
   }
   return out;
 }
@@ -37,15 +47,14 @@ bool hasValues(const std::vector<std::vector<double>>& samples) {
 }
 
 /// Mean over joints (and quantities) of a distance to natural motion.
-WeightedValue distance(const StatisticInput& input, const std::vector<Quantity>& quantities,
+WeightedValue distance(const std::vector<ClipPart>& ownParts,
+                       const std::vector<ClipPart>& naturalParts, size_t lists,
                        double SampleDistance::*which) {
   auto pools = std::make_shared<std::vector<PooledSamples>>();
-  for (Quantity quantity : quantities) {
-    const auto own = samplesByJoint(*input.clips, quantity);
-    const auto natural = samplesByJoint(*input.natural, quantity);
-    for (size_t j = 0; j < own.size(); ++j)
-      if (hasValues(own[j]) && hasValues(natural[j])) pools->emplace_back(own[j], natural[j]);
-  }
+  const auto own = samplesByJoint(ownParts, lists);
+  const auto natural = samplesByJoint(naturalParts, lists);
+  for (size_t j = 0; j < own.size(); ++j)
+    if (hasValues(own[j]) && hasValues(natural[j])) pools->emplace_back(own[j], natural[j]);
   return [pools, which](const Weights& weights) {
     double sum = 0.0;
     for (const PooledSamples& pool : *pools)
@@ -54,39 +63,42 @@ WeightedValue distance(const StatisticInput& input, const std::vector<Quantity>&
   };
 }
 
-bool canMove(const std::vector<Clip>& clips) {
-  return std::any_of(clips.begin(), clips.end(), [](const Clip& c) { return c.frameCount() > 1; });
+bool hasNatural(const StatisticSetting& setting) {
+  return setting.natural && setting.natural->moves && setting.own.moves;
 }
 
-bool hasNatural(const StatisticInput& input) {
-  return input.natural && !input.natural->empty() && canMove(*input.natural) &&
-         canMove(*input.clips);
-}
-
-bool hasNaturalAndHips(const StatisticInput& input) {
-  return hasNatural(input) && rolesOf(*input.clips->front().skeleton).hasFacing();
+bool hasNaturalAndHips(const StatisticSetting& setting) {
+  return hasNatural(setting) && rolesOf(*setting.skeleton).hasFacing();
 }
 
 void addPair(std::vector<Statistic>& list, const std::string& what, const std::string& text,
              const std::string& unit, const std::vector<Quantity>& quantities) {
   const bool needsHips = quantities.front() == Quantity::Sideways;
   const auto applies = needsHips ? hasNaturalAndHips : hasNatural;
+  const auto rule = std::make_shared<const PartRule>(
+      PartRule{[quantities](const Clip& clip, size_t index, const StatisticSetting& setting) {
+        return samplesPart(clip, index, setting.own, quantities);
+      }});
+  const auto by = [count = quantities.size()](double SampleDistance::*which) {
+    return [count, which](const std::vector<ClipPart>& own, const std::vector<ClipPart>& natural,
+                          const StatisticSetting& setting) {
+      const auto joints = static_cast<size_t>(setting.skeleton->jointCount());
+      return distance(own, natural, count * joints, which);
+    };
+  };
   list.push_back(
       {what + "_wasserstein", unit,
        "1-Wasserstein distance between the distributions of " + text +
            " in the clips and in natural motion, mean over joints (of long sets every k-th frame, "
            "about 5,000 in all).",
-       "Ramdas, Garcia Trillos, Cuturi 2017", true, applies, [quantities](const auto& input) {
-         return distance(input, quantities, &SampleDistance::wasserstein);
-       }});
+       "Ramdas, Garcia Trillos, Cuturi 2017", true, applies, rule,
+       by(&SampleDistance::wasserstein)});
   list.push_back(
       {what + "_ks", "",
        "Kolmogorov-Smirnov statistic between the distributions of " + text +
            " in the clips and in natural motion, mean over joints (of long sets every k-th frame, "
            "about 5,000 in all).",
-       "Smirnov 1948", true, applies, [quantities](const auto& input) {
-         return distance(input, quantities, &SampleDistance::kolmogorov);
-       }});
+       "Smirnov 1948", true, applies, rule, by(&SampleDistance::kolmogorov)});
 }
 
 }  // namespace

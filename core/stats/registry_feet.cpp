@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 
+#include "base/packing.h"
 #include "stats/footsteps.h"
 #include "stats/sample_distance.h"
 #include "stats/skate.h"
@@ -15,22 +16,33 @@ namespace {
 
 const char* const kMoGlow = "Henter, Alexanderson, Beskow 2020 (MoGlow), Sec. 5.3";
 
-bool hasFeet(const StatisticInput& input) {
-  return !input.feet.empty();
+/// Foot speeds that enter a median; of longer sets every k-th frame does.
+constexpr double kSpeedLimit = 1e6;
+
+bool hasFeet(const StatisticSetting& setting) {
+  return !setting.feet.empty();
+}
+
+FootstepOptions optionsOf(const StatisticSetting& setting) {
+  return {.feet = setting.feet, .stepCmS = setting.footStepCmS};
+}
+
+ClipPart tallyPart(const Clip& clip, size_t, const StatisticSetting& setting) {
+  const FootstepTally tally = footstepTally(clip, optionsOf(setting));
+  Packer packer;
+  packer.add(clip.seconds()).add(tally.count).add(tally.seconds).add(tally.squaredSeconds);
+  return packer.take();
 }
 
 /// A number read off the footstep curve; `seconds` is the weighted length of the clips.
 using CurveReader = double (*)(const FootstepCurve& curve, double seconds);
 
-WeightedValue fromCurve(const StatisticInput& input, CurveReader read) {
-  const FootstepOptions options{.feet = input.feet, .stepCmS = input.footStepCmS};
-  const auto tolerances = footstepTolerances(options);
-  auto tallies = std::make_shared<std::vector<FootstepTally>>();
+WeightedValue fromCurve(const std::vector<ClipPart>& parts, const StatisticSetting& setting,
+                        CurveReader read) {
+  const auto tolerances = footstepTolerances(optionsOf(setting));
+  auto tallies = std::make_shared<const std::vector<FootstepTally>>(footstepTallies(parts));
   std::vector<double> seconds;
-  for (const Clip& clip : *input.clips) {
-    tallies->push_back(footstepTally(clip, options));
-    seconds.push_back(clip.seconds());
-  }
+  for (const ClipPart& part : parts) seconds.push_back(Unpacker(part).number<double>());
   return [=](const Weights& weights) {
     double total = 0.0;
     for (size_t i = 0; i < weights.clips.size(); ++i) total += weights.clips[i] * seconds[i];
@@ -47,7 +59,10 @@ Statistic footstep(const std::string& name, const std::string& unit, const std::
           .source = kMoGlow,
           .comparison = false,
           .applies = hasFeet,
-          .prepare = [read](const StatisticInput& input) { return fromCurve(input, read); }};
+          .rule = footstepRule(),
+          .combine = [read](const auto& own, const auto&, const StatisticSetting& setting) {
+            return fromCurve(own, setting, read);
+          }};
 }
 
 RatioPart partOf(const SkateTally& tally) {
@@ -57,26 +72,39 @@ RatioPart partOf(const SkateTally& tally) {
 /// A rule that needs to know how high the feet stand: by natural motion where there is some.
 using SkateRule = SkateTally (*)(const Clip&, const std::vector<int>&, const std::vector<double>&);
 
-WeightedValue skate(const StatisticInput& input, SkateRule rule, double scale) {
-  const auto heights = standingHeights(input.natural ? *input.natural : *input.clips, input.feet);
-  return weightedRatio(
-      *input.clips, [&](const Clip& clip) { return partOf(rule(clip, input.feet, heights)); },
-      [scale](double ratio) { return scale * ratio; });
+std::shared_ptr<const PartRule> skate(SkateRule rule) {
+  return ratioRule([rule](const Clip& clip, size_t, const StatisticSetting& setting) {
+    return partOf(rule(clip, setting.feet, setting.standingHeights));
+  });
 }
 
-WeightedValue contact(const StatisticInput& input) {
-  return weightedRatio(
-      *input.clips, [&](const Clip& clip) { return partOf(contactShare(clip, input.feet)); },
-      [](double share) { return 100.0 * share; });
+RatioPart contact(const Clip& clip, size_t, const StatisticSetting& setting) {
+  return partOf(contactShare(clip, setting.feet));
 }
 
-/// The weighted median of all horizontal foot speeds.
-WeightedValue medianSpeed(const StatisticInput& input) {
+double percent(double share) {
+  return 100.0 * share;
+}
+
+ClipPart speedsPart(const Clip& clip, size_t index, const StatisticSetting& setting) {
+  const double all = setting.own.frames * static_cast<double>(setting.feet.size());
+  const auto stride = static_cast<size_t>(std::max(1.0, std::ceil(all / kSpeedLimit)));
+  std::vector<double> kept;
+  for (const int foot : setting.feet) {
+    const auto speeds = horizontalSpeedsCmS(clip, foot);
+    for (size_t i = index % stride; i < speeds.size(); i += stride) kept.push_back(speeds[i]);
+  }
+  Packer packer;
+  packer.add(kept);
+  return packer.take();
+}
+
+/// The weighted median of the horizontal foot speeds.
+WeightedValue medianSpeed(const std::vector<ClipPart>& parts, const std::vector<ClipPart>&,
+                          const StatisticSetting&) {
   auto values = std::make_shared<std::vector<std::pair<double, size_t>>>();
-  for (size_t i = 0; i < input.clips->size(); ++i)
-    for (int foot : input.feet)
-      for (double speed : horizontalSpeedsCmS((*input.clips)[i], foot))
-        values->emplace_back(speed, i);
+  for (size_t i = 0; i < parts.size(); ++i)
+    for (const double speed : Unpacker(parts[i]).list<double>()) values->emplace_back(speed, i);
   std::sort(values->begin(), values->end());
   return [values](const Weights& weights) {
     double total = 0.0;
@@ -109,27 +137,46 @@ std::vector<Statistic> footsteps() {
 
 }  // namespace
 
+std::shared_ptr<const PartRule> footstepRule() {
+  static const auto rule = std::make_shared<const PartRule>(PartRule{tallyPart});
+  return rule;
+}
+
+std::vector<FootstepTally> footstepTallies(const std::vector<ClipPart>& parts) {
+  std::vector<FootstepTally> out;
+  for (const ClipPart& part : parts) {
+    Unpacker bytes(part);
+    bytes.number<double>();  // seconds
+    FootstepTally& tally = out.emplace_back();
+    for (auto* list : {&tally.count, &tally.seconds, &tally.squaredSeconds})
+      *list = bytes.list<double>();
+  }
+  return out;
+}
+
 std::vector<Statistic> footStatistics() {
   std::vector<Statistic> list = footsteps();
-  list.push_back({"foot_speed_median", "cm/s", "Median horizontal speed of the feet over frames.",
-                  "Marey", false, hasFeet, medianSpeed});
+  list.push_back({"foot_speed_median", "cm/s",
+                  "Median horizontal speed of the feet over frames "
+                  "(of long sets every k-th frame, about 1,000,000 in all).",
+                  "Marey", false, hasFeet, std::make_shared<const PartRule>(PartRule{speedsPart}),
+                  medianSpeed});
   list.push_back(
       {"foot_skate_height_weighted", "cm/s",
        "Mean of v (2 - 2^(h/H)), H = 2.5 cm, over feet and frames; 0 where h > H. v: horizontal "
        "speed, h: height above the 5th percentile of the foot's (natural) heights.",
-       "Zhang et al. 2018 (MANN)", false, hasFeet,
-       [](const StatisticInput& in) { return skate(in, heightWeightedSkate, 1.0); }});
+       "Zhang et al. 2018 (MANN)", false, hasFeet, skate(heightWeightedSkate), combineRatio()});
   list.push_back(
       {"foot_skate_share", "%",
        "Share of frames in which some foot below 5 cm (above the 5th percentile of its natural "
        "heights) moves faster than 50 cm/s, that is 2.5 cm per frame at 20 fps.",
-       "Karunratanakul et al. 2023 (Guided Motion Diffusion)", false, hasFeet,
-       [](const StatisticInput& in) { return skate(in, skatingShare, 100.0); }});
+       "Karunratanakul et al. 2023 (Guided Motion Diffusion)", false, hasFeet, skate(skatingShare),
+       combineRatio(percent)});
   list.push_back({"foot_contact_share", "%",
                   "Share of feet and frames in contact: squared displacement in 1/30 s below 0.02 "
                   "cm^2, that is slower than 4.24 cm/s.",
                   "Harvey et al. 2020 (LaFAN1), after Holden et al. 2016", false, hasFeet,
-                  contact});
+                  ratioRule(contact), combineRatio(percent)});
   return list;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "base/job.h"
 #include "motion/clip.h"
 #include "motion/features.h"
+#include "stats/footsteps.h"
+#include "stats/statistic_parts.h"
 
 namespace marey::stats {
 
@@ -31,9 +34,14 @@ struct Weights {
   std::vector<int> natural = {};
 };
 
-/// A statistic made ready for one input: its value under weights. NaN where the weighted set has no
+/// A statistic made ready for one set: its value under weights. NaN where the weighted set has no
 /// value (no footstep, no pair). This form makes a bootstrap cheap.
 using WeightedValue = std::function<double(const Weights& weights)>;
+
+/// How the part of one clip is worked out. Statistics may share a rule: it is followed once.
+struct PartRule {
+  std::function<ClipPart(const Clip& clip, size_t index, const StatisticSetting& setting)> part;
+};
 
 struct Statistic {
   std::string name;         ///< "footstep_v95": stable, for JSON and CSV
@@ -41,16 +49,31 @@ struct Statistic {
   std::string definition;   ///< one sentence
   std::string source;       ///< paper, section or repository
   bool comparison = false;  ///< a distance to natural motion: 0 is the same
-  /// Whether the input has what is needed (natural motion, feet, wanted paths, hips).
-  std::function<bool(const StatisticInput&)> applies;
-  std::function<WeightedValue(const StatisticInput&)> prepare;
+  /// Whether there is what is needed (natural motion, feet, wanted paths, hips).
+  std::function<bool(const StatisticSetting&)> applies;
+  std::shared_ptr<const PartRule> rule;
+  /// From the parts of all clips, and of natural ones (worked out in their own setting) for a
+  /// comparison.
+  std::function<WeightedValue(const std::vector<ClipPart>& own,
+                              const std::vector<ClipPart>& natural,
+                              const StatisticSetting& setting)>
+      combine;
 };
+
+/// The rules of statistics, each once: the order of SetParts.
+std::vector<std::shared_ptr<const PartRule>> rulesOf(const std::vector<Statistic>& statistics);
+/// What a clip adds to every rule; "" for rules of which no statistic applies.
+std::vector<ClipPart> partsOf(const std::vector<Statistic>& statistics, const Clip& clip,
+                              size_t index, const StatisticSetting& setting);
 
 /// Every statistic, in the order of tables.
 const std::vector<Statistic>& allStatistics();
 /// Throws UsageError naming the statistics there are.
 const Statistic& statisticByName(const std::string& name);
 
+/// Whether a statistic applies to an input, and its value under weights.
+bool appliesTo(const Statistic& statistic, const StatisticInput& input);
+WeightedValue prepared(const Statistic& statistic, const StatisticInput& input);
 /// Value over the clips of an input. Throws InputError where the statistic does not apply.
 double valueOf(const Statistic& statistic, const StatisticInput& input);
 
@@ -82,8 +105,25 @@ std::vector<StatisticResult> evaluate(const std::vector<Statistic>& statistics,
                                       const StatisticInput& input,
                                       const EvaluationOptions& options = {});
 
+/// A set as its parts: what evaluate needs of clips.
+struct StatisticSet {
+  StatisticSetting setting;
+  SetParts parts;  ///< by rule (see rulesOf) and clip
+};
+/// The same of sets whose parts were worked out before; `natural` (in a setting where it is its own
+/// natural motion) may be null.
+std::vector<StatisticResult> evaluate(const std::vector<Statistic>& statistics,
+                                      const StatisticSet& set, const StatisticSet* natural,
+                                      const EvaluationOptions& options, Progress& progress);
+/// Throws InputError unless a clip can stand in one set with `first`: same joints, same rate.
+void requireComparable(const Clip& clip, const Clip& first);
+
 /// Weights of bootstrap resample `index`: how often each of n clips was drawn in n draws.
 std::vector<int> resampleWeights(int clips, uint64_t seed, uint32_t index);
+
+/// The rule of footstep counts, which a curve of the whole set can be made from as well.
+std::shared_ptr<const PartRule> footstepRule();
+std::vector<FootstepTally> footstepTallies(const std::vector<ClipPart>& parts);
 
 // Parts of the registry, one per file.
 std::vector<Statistic> footStatistics();

@@ -14,9 +14,15 @@ struct RatioPart {
   double count = 0.0;
 };
 
-/// finish(sum / count) over the weighted clips; NaN where the count is zero.
-WeightedValue weightedRatio(const std::vector<Clip>& clips,
-                            const std::function<RatioPart(const Clip&)>& part,
+/// A rule whose parts are RatioParts, and finish(sum / count) over weighted ones; NaN where the
+/// count is zero.
+std::shared_ptr<const PartRule> ratioRule(
+    std::function<RatioPart(const Clip&, size_t index, const StatisticSetting&)> part);
+WeightedValue weightedRatio(const std::vector<ClipPart>& parts,
                             const std::function<double(double)>& finish = {});
+/// Statistic::combine by it.
+std::function<WeightedValue(const std::vector<ClipPart>&, const std::vector<ClipPart>&,
+                            const StatisticSetting&)>
+combineRatio(std::function<double(double)> finish = {});
 
 }  // namespace marey::stats

@@ -26,6 +26,7 @@ struct Floor {
 
 const std::map<std::string, Floor> kHouse{
     {"core/base", {{}, {"nlohmann_json", "marey_fmt", "Threads", "PkgConfig::libzip"}}},
+    {"core/ranks", {{"base"}, {"Boost::", "MPI::"}}},
     {"core/motion", {{"base"}, {"Eigen3"}}},
     {"core/io", {{"base", "motion"}, {"TinyGLTF"}}},
     {"core/stats", {{"base", "motion"}, {"Boost"}}},
@@ -37,7 +38,8 @@ const std::map<std::string, Floor> kHouse{
       {"VTK::", "PkgConfig::CAIRO", "PkgConfig::PNG", "PkgConfig::EGL", "PkgConfig::LIBAV"}}},
     {"core/report", {{"base", "motion", "io", "stats", "model", "experiment", "render"}, {"ZLIB"}}},
     {"core/cli",
-     {{"base", "motion", "io", "stats", "nn", "model", "experiment", "render", "report", "plugins"},
+     {{"base", "ranks", "motion", "io", "stats", "nn", "model", "experiment", "render", "report",
+       "plugins"},
       {"CLI11", "dl"}}},
     {"plugins", {{"base", "motion", "nn", "model", "plugins"}, {"torch"}}},
     {"gui/shell",

@@ -11,6 +11,7 @@
 #include "stats/bones.h"
 #include "stats/footsteps.h"
 #include "stats/statistic.h"
+#include "stats/weighted.h"
 
 namespace marey::stats {
 namespace {
@@ -60,7 +61,7 @@ TEST(Registry, EveryStatisticHasAFiniteValueOnWalkers) {
   StatisticInput input = inputOf(samples(), &natural());
   input.wanted = &wanted;
   for (const Statistic& s : allStatistics()) {
-    ASSERT_TRUE(s.applies(input)) << s.name;
+    ASSERT_TRUE(appliesTo(s, input)) << s.name;
     EXPECT_TRUE(std::isfinite(valueOf(s, input))) << s.name;
   }
 }
@@ -91,8 +92,8 @@ TEST(Registry, AWeightOfTwoEqualsTheClipTwice) {
   const StatisticInput doubled = inputOf(repeated, &natural());
   for (const Statistic& s : allStatistics()) {
     // Diversity takes no pair of a clip and its own copy; path error needs wanted paths.
-    if (s.name == "diversity" || !s.applies(input)) continue;
-    EXPECT_NEAR(s.prepare(input)({{1, 2, 1, 1}}), valueOf(s, doubled),
+    if (s.name == "diversity" || !appliesTo(s, input)) continue;
+    EXPECT_NEAR(prepared(s, input)({{1, 2, 1, 1}}), valueOf(s, doubled),
                 1e-9 * std::max(1.0, std::abs(valueOf(s, doubled))))
         << s.name;
   }
@@ -139,16 +140,11 @@ TEST(Bootstrap, TheIntervalOfAMeanIsThatOfTheNormalApproximation) {
                        "The mean of x.",
                        "test",
                        false,
-                       [](const StatisticInput&) { return true; },
-                       [](const StatisticInput& in) {
-                         const std::vector<Clip>* set = in.clips;
-                         return [set](const Weights& w) {
-                           double sum = 0.0;
-                           for (size_t i = 0; i < set->size(); ++i)
-                             sum += w.clips[i] * (*set)[i].at(0, 0).x();
-                           return sum / std::accumulate(w.clips.begin(), w.clips.end(), 0.0);
-                         };
-                       }};
+                       [](const StatisticSetting&) { return true; },
+                       ratioRule([](const Clip& clip, size_t, const StatisticSetting&) {
+                         return RatioPart{clip.at(0, 0).x(), 1.0};
+                       }),
+                       combineRatio()};
   const StatisticInput input{.clips = &clips, .natural = &clips};
   const StatisticResult r = evaluate({mean}, input, {.resamples = 2000, .splits = 400}).front();
   EXPECT_NEAR(r.value, 0.5, 1e-12);

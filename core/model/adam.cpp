@@ -52,6 +52,8 @@ void fusedStep(Adam::Slot& slot, const torch::Tensor& raw, double rate, const Co
                            .beta1 = static_cast<float>(kBeta1),
                            .beta2 = static_cast<float>(kBeta2),
                            .epsilon = static_cast<float>(kEpsilon),
+                           .rest1 = static_cast<float>(1.0 - kBeta1),
+                           .rest2 = static_cast<float>(1.0 - kBeta2),
                            .rate = static_cast<float>(rate / c.mean),
                            .squareScale = static_cast<float>(1.0 / std::sqrt(c.square))};
   const auto from = [&](int64_t at) {

@@ -47,8 +47,9 @@ class GlooGroup : public ProcessGroup {
   }
 
   void sum(Tensor& values) override {
+    const torch::NoGradGuard guard;
     together([&] {
-      std::vector<Tensor> here{values.cpu().contiguous()};
+      std::vector<Tensor> here{values.detach().cpu().contiguous()};
       m_group->allreduce(here)->wait();
       values.copy_(here[0]);
     });
@@ -63,8 +64,9 @@ class GlooGroup : public ProcessGroup {
   }
 
   void spread(Tensor& values) override {
+    const torch::NoGradGuard guard;
     together([&] {
-      std::vector<Tensor> here{values.cpu().contiguous()};
+      std::vector<Tensor> here{values.detach().cpu().contiguous()};
       m_group->broadcast(here)->wait();
       values.copy_(here[0]);
     });

@@ -5,8 +5,9 @@
 #include <ATen/CPUGeneratorImpl.h>
 #include <gtest/gtest.h>
 
+#include "model/weights.h"
+#include "moglow/family.h"
 #include "moglow/net.h"
-#include "motion/walker.h"
 #include "nn/fast_flow.h"
 
 namespace marey {
@@ -122,6 +123,83 @@ INSTANTIATE_TEST_SUITE_P(Shapes, FastTraining,
                          [](const auto& info) {
                            return info.param.cell + std::to_string(info.index);
                          });
+
+TEST(FastTrainingPath, TakesOnlyWhatItCanDo) {
+  auto random = generator(1);
+  const auto flowOf = [&](int64_t hidden, const char* cell) {
+    return nn::Flow({.channels = 4, .conditioning = 3, .steps = 1, .net = {cell, hidden, 1}},
+                    random);
+  };
+  const auto x = torch::zeros({2, 3, 4}), c = torch::zeros({2, 3, 3});
+  EXPECT_TRUE(nn::takesFastPath(flowOf(64, "gru"), x, {c}));
+  EXPECT_FALSE(nn::takesFastPath(flowOf(48, "lstm"), x, {c}));
+  EXPECT_FALSE(nn::takesFastPath(flowOf(64, "lstm"), x.to(torch::kFloat64), {c}));
+  EXPECT_FALSE(nn::takesFastPath(flowOf(64, "lstm"), x, {c.clone().requires_grad_(true)}));
+}
+
+TEST(FastTrainingPath, ASecondGradientIsRefused) {
+  auto random = generator(1);
+  const nn::Flow flow(
+      {.channels = 4, .conditioning = 3, .steps = 2, .net = {.cell = "lstm", .hidden = 32}},
+      random);
+  const auto loss =
+      nn::fastToLatent(flow, torch::ones({2, 3, 4}), {torch::ones({2, 3, 3})}).value.sum();
+  loss.backward({}, /*retain_graph=*/true);
+  EXPECT_THROW(loss.backward(), c10::Error);
+}
+
+/// Loss and gradients of a model in training on a few windows of noise.
+struct NetRun {
+  NetRun(TrainableModel& net, int64_t poseDim, Execution execution) {
+    auto random = generator(6);
+    const int64_t window = net.context() + 6 + net.lookahead();
+    TrainingBatch batch{0.3 * torch::randn({3, window, poseDim}, random),
+                        0.3 * torch::randn({3, window, 3}, random),
+                        torch::ones({3, window}),
+                        {}};
+    batch.keep = net.drawDropout(batch, random);
+    net.execution = execution;
+    net.train();
+    values = net.logLikelihood(batch);
+    values.mean().backward();
+    gradients = gradientsOf(net);
+  }
+  Tensor values;
+  std::vector<Tensor> gradients;
+};
+
+void expectSamePaths(TrainableModel& net, int64_t poseDim) {
+  const NetRun fast(net, poseDim, Execution::Engine), plain(net, poseDim, Execution::Reference);
+  EXPECT_LT(relativeError(fast.values, plain.values.to(torch::kFloat64)), 1e-5);
+  for (size_t i = 0; i < plain.gradients.size(); ++i)
+    EXPECT_LT(relativeError(fast.gradients[i], plain.gradients[i]), 5e-5) << i;
+}
+
+TEST(FastTrainingPath, HidesTheHistoryThatALinearBaseShows) {
+  moglow::Config config;
+  config.poseDim = 12;
+  config.tau = 4;
+  config.lookahead = 2;
+  config.steps = 2;
+  config.hidden = 32;
+  config.dropout = 0.7;
+  config.poseBase = "linear";
+  moglow::Net net(config, {}, 2);
+  makeLively(net, 9);
+  for (auto& item : net.named_buffers())
+    if (item.key() == "base.weight") item.value().normal_(0.0, 0.05, generator(4));
+  expectSamePaths(net, 12);
+}
+
+TEST(FastTrainingPath, TrainsOnTheInnovationsOfAKinematicBase) {
+  const std::string path = MAREY_SOURCE_DIR "/resources/models/moglow-plus-small.marey";
+  const TensorFile file = readTensorFile(path);
+  const ModelInfo info = loadCommon(file, path);
+  const Trainee trainee = moglow::family().makeTrainee(
+      info.config, path, {info.poseDim, info.controlDim, info.skeleton, info.standardiser}, 1);
+  loadWeights(*trainee.net, file, path);
+  expectSamePaths(*trainee.net, info.poseDim);
+}
 
 }  // namespace
 }  // namespace marey

@@ -92,8 +92,9 @@ struct AdamStep {
   const float* gradient = nullptr;
   float limit = 0.f, gradientScale = 1.f;
   float beta1 = 0.f, beta2 = 0.f, epsilon = 0.f;
-  float rate = 0.f;         ///< with the correction of the mean
-  float squareScale = 0.f;  ///< correction of the square's root
+  float rest1 = 0.f, rest2 = 0.f;  ///< 1 - beta: a difference in float32 would be too coarse
+  float rate = 0.f;                ///< with the correction of the mean
+  float squareScale = 0.f;         ///< correction of the square's root
   long blocks = 0;
 };
 

@@ -120,8 +120,8 @@ void gruBackward(const TrainingRows& b) {
 }
 
 void adam(const AdamStep& a) {
-  const Lanes keepMean = all(a.beta1), keepSquare = all(a.beta2), addMean = all(1.f - a.beta1),
-              addSquare = all(1.f - a.beta2), scale = all(a.gradientScale), limit = all(a.limit),
+  const Lanes keepMean = all(a.beta1), keepSquare = all(a.beta2), addMean = all(a.rest1),
+              addSquare = all(a.rest2), scale = all(a.gradientScale), limit = all(a.limit),
               rate = all(a.rate), squareScale = all(a.squareScale), epsilon = all(a.epsilon);
   for (long i = 0; i < a.blocks * kLanes; i += kLanes) {
     const Lanes raw = load(a.gradient + i);

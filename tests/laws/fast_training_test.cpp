@@ -1,4 +1,5 @@
 // The fast path of training against the plain libtorch path.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -148,31 +149,43 @@ TEST(FastTrainingPath, ASecondGradientIsRefused) {
   EXPECT_THROW(loss.backward(), c10::Error);
 }
 
-/// Loss and gradients of a model in training on a few windows of noise.
+/// Log-likelihoods and gradients of a model in training on a few windows of noise.
 struct NetRun {
-  NetRun(TrainableModel& net, int64_t poseDim, Execution execution) {
+  NetRun(TrainableModel& net, int64_t poseDim, Execution execution, torch::Dtype type) {
     auto random = generator(6);
     const int64_t window = net.context() + 6 + net.lookahead();
-    TrainingBatch batch{0.3 * torch::randn({3, window, poseDim}, random),
-                        0.3 * torch::randn({3, window, 3}, random),
-                        torch::ones({3, window}),
+    TrainingBatch batch{(0.3 * torch::randn({3, window, poseDim}, random)).to(type),
+                        (0.3 * torch::randn({3, window, 3}, random)).to(type),
+                        torch::ones({3, window}, type),
                         {}};
     batch.keep = net.drawDropout(batch, random);
     net.execution = execution;
     net.train();
-    values = net.logLikelihood(batch);
+    net.to(type);
+    values = net.logLikelihood(batch).to(torch::kFloat64);
     values.mean().backward();
     gradients = gradientsOf(net);
+  }
+  /// The largest relative error of a gradient.
+  double errorAgainst(const NetRun& exact) const {
+    double out = relativeError(values, exact.values);
+    for (size_t i = 0; i < gradients.size(); ++i)
+      out = std::max(out, relativeError(gradients[i], exact.gradients[i]));
+    return out;
   }
   Tensor values;
   std::vector<Tensor> gradients;
 };
 
-void expectSamePaths(TrainableModel& net, int64_t poseDim) {
-  const NetRun fast(net, poseDim, Execution::Engine), plain(net, poseDim, Execution::Reference);
-  EXPECT_LT(relativeError(fast.values, plain.values.to(torch::kFloat64)), 1e-5);
-  for (size_t i = 0; i < plain.gradients.size(); ++i)
-    EXPECT_LT(relativeError(fast.gradients[i], plain.gradients[i]), 5e-5) << i;
+/// Noise is far from what a base has learned, and large innovations round coarsely on either path.
+void expectAsExactAsThePlainPath(TrainableModel& net, int64_t poseDim) {
+  const NetRun fast(net, poseDim, Execution::Engine, torch::kFloat32),
+      plain(net, poseDim, Execution::Reference, torch::kFloat32),
+      exact(net, poseDim, Execution::Reference, torch::kFloat64);
+  const double error = fast.errorAgainst(exact);
+  EXPECT_GT(error, 0.0);
+  EXPECT_LT(error, 1e-3);
+  EXPECT_LT(error, 2.0 * plain.errorAgainst(exact) + 1e-5);
 }
 
 TEST(FastTrainingPath, HidesTheHistoryThatALinearBaseShows) {
@@ -188,7 +201,7 @@ TEST(FastTrainingPath, HidesTheHistoryThatALinearBaseShows) {
   makeLively(net, 9);
   for (auto& item : net.named_buffers())
     if (item.key() == "base.weight") item.value().normal_(0.0, 0.05, generator(4));
-  expectSamePaths(net, 12);
+  expectAsExactAsThePlainPath(net, 12);
 }
 
 TEST(FastTrainingPath, TrainsOnTheInnovationsOfAKinematicBase) {
@@ -198,7 +211,7 @@ TEST(FastTrainingPath, TrainsOnTheInnovationsOfAKinematicBase) {
   const Trainee trainee = moglow::family().makeTrainee(
       info.config, path, {info.poseDim, info.controlDim, info.skeleton, info.standardiser}, 1);
   loadWeights(*trainee.net, file, path);
-  expectSamePaths(*trainee.net, info.poseDim);
+  expectAsExactAsThePlainPath(*trainee.net, info.poseDim);
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ void addBenchCommand(CLI::App& app, Context& context) {
   auto* bench = app.add_subcommand("bench", "Measure speed on this machine");
   bench->require_subcommand(1);
   addModelBenchCommands(*bench, context);
+  addTrainBenchCommand(*bench, context);
   auto* render = addCommand(*bench, context, "render", "How fast many skeletons are drawn",
                             "marey bench render --motions 1000 --detail lines",
                             [o, &context] { runRender(*o, context); });

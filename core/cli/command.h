@@ -68,6 +68,7 @@ void addModelCommand(CLI::App& app, Context& context);
 void addBenchCommand(CLI::App& app, Context& context);
 /// `bench sample` and `bench score`.
 void addModelBenchCommands(CLI::App& bench, Context& context);
+void addTrainBenchCommand(CLI::App& bench, Context& context);
 
 /// --weights: how the engine keeps a model's weights.
 void addWeightsOption(CLI::App& command, std::string& weights);

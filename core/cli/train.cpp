@@ -32,9 +32,14 @@ void run(Options& o, const Context& context) {
   if (o.steps > 0) o.request.steps = o.steps;
   if (o.minutes > 0.0) o.request.minutes = o.minutes;
   const DataSet data = readDataSet(o.data);
-  Progress progress = context.progress("train");
+  o.request.process = processRank();
+  const bool leads = o.request.process.rank == 0;
+  Context own = context;
+  own.quiet = context.quiet || !leads;
+  Progress progress = own.progress("train");
   const TrainResult result = train(data, o.request, modelFamilies(), progress);
   progress.report(1.0, fmt::format("step {}", result.steps));
+  if (!leads) return;
   const Json json = {{"steps", result.steps},
                      {"train_bits_per_frame", finiteOrNull(result.trainBitsPerFrame)},
                      {"valid_bits_per_frame", finiteOrNull(result.validBitsPerFrame)},

@@ -2,15 +2,15 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <numbers>
-#include <sstream>
 
 #include <ATen/CPUGeneratorImpl.h>
 
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "model/batches.h"
+#include "model/optimiser.h"
+#include "model/run_files.h"
 #include "model/training_pace.h"
 #include "model/training_state.h"
 #include "model/weights.h"
@@ -22,19 +22,9 @@ namespace {
 constexpr int kNonFiniteLimit = 5;
 constexpr int kEvaluationFrames = 400;
 constexpr int64_t kEvaluationBatch = 16;
-constexpr const char* kLogHeader =
-    "step,seconds,learning_rate,train_bits_per_frame,valid_bits_per_frame,test_bits_per_frame,"
-    "gradient_norm,skipped\n";
 
-/// Mean log-density in nats of the real frames of a batch; counts them in `frames`.
-torch::Tensor meanLogLikelihood(TrainableModel& net, const TrainingBatch& batch,
-                                at::Generator* dropout, double* frames) {
-  const int64_t first = net.context(), ahead = net.lookahead();
-  const auto mask = batch.mask.narrow(1, first + ahead, batch.mask.size(1) - first - ahead);
-  const auto count = mask.sum().clamp_min(1.0);
-  if (frames != nullptr) *frames = mask.sum().item<double>();
-  return (net.logLikelihood(batch, dropout) * mask).sum() / count;
-}
+/// What the processes agree on before every step; the largest holds.
+constexpr double kGoOn = 0.0, kEnd = 1.0, kCancel = 2.0;
 
 /// The first parameter that (or whose gradient) is not finite; where all are, the loss alone
 /// overflowed, and the parameter with the largest weight is the likely cause.
@@ -56,26 +46,6 @@ std::string suspectLayer(const torch::nn::Module& net) {
   return fmt::format("{} (its largest weight is {:.3g})", largestName, largest);
 }
 
-/// Clips in place, by value and then by norm, as the authors do. Returns the norm before.
-double clipGradients(const torch::nn::Module& net, const TrainingConfig& c) {
-  std::vector<torch::Tensor> gradients;
-  for (const auto& p : net.parameters())
-    if (p.grad().defined()) gradients.push_back(p.grad());
-  std::vector<torch::Tensor> norms;
-  for (auto& g : gradients) norms.push_back(g.square().sum());
-  const double raw = std::sqrt(torch::stack(norms).sum().item<double>());
-  if (!std::isfinite(raw)) return raw;
-  norms.clear();
-  for (auto& g : gradients) {
-    if (c.clipValue > 0) g.clamp_(-c.clipValue, c.clipValue);
-    norms.push_back(g.square().sum());
-  }
-  const double norm = std::sqrt(torch::stack(norms).sum().item<double>());
-  if (c.clipNorm > 0 && norm > c.clipNorm)
-    for (auto& g : gradients) g.mul_(c.clipNorm / norm);
-  return raw;
-}
-
 /// One training run: what it is given, what it carries, what it writes.
 class Run {
  public:
@@ -85,7 +55,9 @@ class Run {
         m_family(familyNamed(request.config.value("family", ""), families, request.configOrigin)),
         m_config(trainingConfigFromJson(request.config.value("training", Json::object()),
                                         request.configOrigin)),
-        m_device(request.device == "cuda" ? torch::kCUDA : torch::kCPU) {
+        m_device(request.device == "cuda" ? torch::kCUDA : torch::kCPU),
+        m_group(nn::joinProcesses(request.process,
+                                  nn::meetingPoint(fs::weakly_canonical(request.run).string()))) {
     requireFinite(data.train, "training data");
     requireFinite(data.test, "test data");
     if (request.device != "cpu" && request.device != "cuda")
@@ -103,7 +75,8 @@ class Run {
     const auto clock = std::chrono::steady_clock::now();
     const double before = m_state.seconds;
     const int64_t firstStep = m_state.step;
-    while (!ended() && !progress.cancelled()) {
+    double decision = kGoOn;
+    while ((decision = m_group->largest(wish(progress))) == kGoOn) {
       trainStep();
       m_state.seconds =
           before + std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
@@ -116,7 +89,7 @@ class Run {
       restate();
     else if (idle || m_sinceCheckpoint > 0)
       checkpoint();
-    progress.throwIfCancelled();
+    if (decision == kCancel) throw CancelledError();
     return {m_state.step,
             m_lastTrainBits,
             m_state.bestValid,
@@ -124,6 +97,8 @@ class Run {
             m_request.run / "best.marey",
             m_request.run / "last.marey"};
   }
+
+  nn::ProcessGroup& group() { return *m_group; }
 
  private:
   void makeBatches() {
@@ -152,7 +127,8 @@ class Run {
 
   Json identity() const {
     Json training = toJson(m_config);
-    training.erase("steps");  // a run may be prolonged
+    training.erase("steps");       // a run may be prolonged
+    training.erase("accumulate");  // and go on where there is less memory
     return {{"data", m_data.hash},
             {"seed", m_request.seed},
             {"training", training},
@@ -168,11 +144,13 @@ class Run {
     if (!m_request.resume && exists)
       throw InputError({.path = m_request.run.string()}, "a new folder, or --resume", "a run");
     net.to(m_device);
-    m_adam.emplace(net);
+    net.execution = m_request.execution;
+    m_group->requireSame("run", identity().dump());
+    m_optimiser.emplace(net, m_config, *m_group);
     if (m_request.resume) {
-      m_state = loadState(statePath, net, *m_adam, identity());
+      m_state = loadState(statePath, net, m_optimiser->adam, identity());
       m_facts = readJson(m_request.run / "config.json").value("facts", Json::object());
-      cutLog();
+      if (m_group->leads()) cutLog(m_request.run, m_state.step);
       return;
     }
     if (m_request.init.empty()) {
@@ -181,19 +159,26 @@ class Run {
       loadWeights(net, readTensorFile(m_request.init), m_request.init.string());
       m_facts = {{"initial_weights", m_request.init.filename().string()}};
     }
+    // Another kind of processor may have rounded its start otherwise.
+    for (auto& p : net.parameters()) m_group->spread(p);
+    for (auto& b : net.buffers()) m_group->spread(b);
     if (m_config.ema > 0)
       for (const auto& item : net.named_parameters())
         m_state.average[item.key()] = item.value().detach().clone();
+    if (!m_group->leads()) return;
     writeJson(m_request.run / "config.json", {{"config", m_request.config},
                                               {"seed", m_request.seed},
                                               {"facts", m_facts},
                                               {"data", m_data.hash}});
-    writeFileAtomically(m_request.run / "log.csv", kLogHeader);
+    startLog(m_request.run);
   }
 
-  bool ended() const {
-    if (m_state.step >= m_request.steps.value_or(m_config.steps)) return true;
-    return m_request.minutes && m_state.seconds >= 60.0 * *m_request.minutes;
+  double wish(const Progress& progress) const {
+    if (progress.cancelled()) return kCancel;
+    if (m_state.step >= m_request.steps.value_or(m_config.steps)) return kEnd;
+    // Clocks differ: that of the leading process counts.
+    const bool late = m_request.minutes && m_state.seconds >= 60.0 * *m_request.minutes;
+    return late && m_group->leads() ? kEnd : kGoOn;
   }
 
   void trainStep() {
@@ -201,20 +186,18 @@ class Run {
     net.train();
     auto generator = at::detail::createCPUGenerator(m_request.seed * 0x9E3779B97F4A7C15ull +
                                                     static_cast<uint64_t>(m_state.step));
-    const auto batch = m_train->forStep(m_request.seed, m_state.step, m_config.batch);
-    for (auto& p : net.parameters()) p.mutable_grad() = torch::Tensor();
-    const auto loss = -meanLogLikelihood(net, batch, &generator, nullptr);
-    const double value = loss.item<double>();
-    if (std::isfinite(value)) loss.backward();
-    const double norm = std::isfinite(value) ? clipGradients(net, m_config) : value;
-    if (!std::isfinite(value) || !std::isfinite(norm)) {
+    auto batch = m_train->forStep(m_request.seed, m_state.step, m_config.batch);
+    batch.keep = net.drawDropout(batch, generator);
+    const StepReport report =
+        m_optimiser->step(batch, learningRateAt(m_config, m_state.step), m_state.updates + 1);
+    if (!report.taken) {
       skip(net);
     } else {
       m_state.nonFinite = 0;
-      m_adam->step(learningRateAt(m_config, m_state.step), ++m_state.updates);
+      ++m_state.updates;
       updateAverage(net);
-      m_lossSum += value;
-      m_normSum += norm;
+      m_lossSum += report.lossNats;
+      m_normSum += report.norm;
       ++m_lossCount;
     }
     ++m_state.step;
@@ -240,21 +223,26 @@ class Run {
         m_state.average[item.key()].lerp_(item.value(), 1.0 - decay);
   }
 
-  /// Bits per frame of standardised poses; NaN without data.
+  /// Bits per frame of standardised poses; NaN without data. Every process takes some windows.
   double evaluate(const std::optional<Batches>& batches) {
     if (!batches) return std::nan("");
     const c10::InferenceMode guard;
     m_trainee.net->eval();
     double sum = 0.0, frames = 0.0;
-    for (int64_t first = 0; first < batches->windowCount(); first += kEvaluationBatch) {
-      double count = 0.0;
+    const auto [rank, size] = m_group->rank();
+    for (int64_t first = rank * kEvaluationBatch; first < batches->windowCount();
+         first += size * kEvaluationBatch) {
       const auto batch =
           batches->inOrder(first, std::min(kEvaluationBatch, batches->windowCount() - first));
-      const double mean = meanLogLikelihood(*m_trainee.net, batch, nullptr, &count).item<double>();
+      const double count = scoredFrames(*m_trainee.net, batch);
       if (count == 0.0) continue;
-      sum += mean * count;
+      sum += sumOfLogLikelihood(*m_trainee.net, batch).item<double>();
       frames += count;
     }
+    auto both = torch::tensor({sum, frames}, torch::kFloat64);
+    m_group->sum(both);
+    sum = both[0].item<double>();
+    frames = both[1].item<double>();
     return frames > 0.0 ? -sum / frames / std::numbers::ln2 : std::nan("");
   }
 
@@ -265,16 +253,22 @@ class Run {
       const AveragedWeights averaged(*m_trainee.net, m_state);
       valid = evaluate(m_valid);
       test = evaluate(m_test);
-      model = serialise(exportModel(valid, test));
+      if (m_group->leads()) model = serialise(exportModel(valid, test));
     }
     m_lastTrainBits = m_lossCount > 0 ? m_lossSum / m_lossCount / std::numbers::ln2 : std::nan("");
     m_lastTestNats = -test * std::numbers::ln2 + m_data.standardiser.logDetPerFrame();
     const double judged = std::isnan(valid) ? m_lastTrainBits : valid;
+    const bool best = judged < m_state.bestValid;
+    if (best) m_state.bestValid = judged;
+    if (m_group->leads()) write(model, best, valid, test);
+    m_lossSum = m_normSum = 0.0;
+    m_lossCount = m_skipped = 0;
+    m_sinceCheckpoint = 0;
+  }
+
+  void write(const std::string& model, bool best, double valid, double test) {
     writeFileAtomically(m_request.run / "last.marey", model);
-    if (judged < m_state.bestValid) {
-      m_state.bestValid = judged;
-      writeFileAtomically(m_request.run / "best.marey", model);
-    }
+    if (best) writeFileAtomically(m_request.run / "best.marey", model);
     const auto due = m_config.snapshotMinutes > 0
                          ? static_cast<int64_t>(m_state.seconds / 60.0 / m_config.snapshotMinutes)
                          : 0;
@@ -283,12 +277,13 @@ class Run {
       writeFileAtomically(
           m_request.run / "snapshots" / fmt::format("step_{:07}.marey", m_state.step), model);
     }
-    appendLog(valid, test);
+    const double count = std::max<double>(1.0, static_cast<double>(m_lossCount));
+    appendLog(m_request.run,
+              {m_state.step, m_state.seconds, learningRateAt(m_config, m_state.step - 1),
+               m_lastTrainBits, valid, test, m_normSum / count, m_skipped});
     // Last: a run that is killed before this line goes on from the checkpoint before.
-    saveState(m_request.run / "state.marey", m_state, *m_trainee.net, *m_adam, identity());
-    m_lossSum = m_normSum = 0.0;
-    m_lossCount = m_skipped = 0;
-    m_sinceCheckpoint = 0;
+    saveState(m_request.run / "state.marey", m_state, *m_trainee.net, m_optimiser->adam,
+              identity());
   }
 
   /// A run that had ended says again what it reached.
@@ -329,25 +324,6 @@ class Run {
     return file;
   }
 
-  void appendLog(double valid, double test) {
-    std::ofstream log(m_request.run / "log.csv", std::ios::app);
-    const double count = std::max<double>(1.0, static_cast<double>(m_lossCount));
-    log << fmt::format("{},{:.1f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", m_state.step,
-                       m_state.seconds, learningRateAt(m_config, m_state.step - 1), m_lastTrainBits,
-                       valid, test, m_normSum / count, m_skipped);
-    if (!log.flush()) throw FileError((m_request.run / "log.csv").string() + ": cannot write");
-  }
-
-  /// Drops rows of the log that a killed run wrote after its last state.
-  void cutLog() {
-    std::istringstream in(readFile(m_request.run / "log.csv"));
-    std::string line, kept = kLogHeader;
-    std::getline(in, line);
-    while (std::getline(in, line))
-      if (std::strtoll(line.c_str(), nullptr, 10) <= m_state.step) kept += line + "\n";
-    writeFileAtomically(m_request.run / "log.csv", kept);
-  }
-
   void tell(Progress& progress, double rate) {
     const double bySteps = static_cast<double>(m_state.step) /
                            static_cast<double>(m_request.steps.value_or(m_config.steps));
@@ -367,10 +343,11 @@ class Run {
   const ModelFamily& m_family;
   TrainingConfig m_config;
   torch::Device m_device;
+  std::unique_ptr<nn::ProcessGroup> m_group;
   Trainee m_trainee;
   std::optional<Batches> m_train, m_valid, m_test;
   TrainingPace m_pace;
-  std::optional<Adam> m_adam;
+  std::optional<Optimiser> m_optimiser;
   TrainingState m_state;
   Json m_facts = Json::object();
   double m_lossSum = 0.0, m_normSum = 0.0;
@@ -385,7 +362,13 @@ TrainResult train(const DataSet& data, const TrainRequest& request,
   if (!request.config.is_object() || !request.config.contains("model"))
     throw InputError({.path = request.configOrigin},
                      "an object with 'family', 'model' and 'training'", "something else");
-  return Run(data, request, families).execute(progress);
+  Run run(data, request, families);
+  try {
+    return run.execute(progress);
+  } catch (const std::exception& e) {
+    run.group().abandon(e.what());
+    throw;
+  }
 }
 
 }  // namespace marey

@@ -7,30 +7,11 @@
 #include <string>
 
 #include "base/job.h"
+#include "base/process_rank.h"
 #include "model/data_set.h"
+#include "model/training_config.h"
 
 namespace marey {
-
-/// The "training" object of a configuration.
-struct TrainingConfig {
-  double windowS = 4.0, hopS = 2.0;
-  int batch = 100;
-  double learningRate = 1e-4;
-  std::string schedule = "fixed";  ///< fixed, noam, cosine
-  int64_t warmupSteps = 1000;
-  double minimumRate = 1e-5;                 ///< floor of noam and cosine
-  double clipValue = 5.0, clipNorm = 100.0;  ///< 0: off
-  double ema = 0.0;                          ///< decay of the averaged weights; 0: off
-  int64_t steps = 100000;                    ///< the run's planned end (and the cosine's)
-  int64_t checkpointEvery = 100;             ///< steps between checkpoints (and validations)
-  double validationShare = 0.05;             ///< of the training clips, left out of training
-  double snapshotMinutes = 10.0;             ///< a checkpoint is kept for good this often; 0: never
-  bool useReversed = true;  ///< train on time-reversed clips too, where the data has them
-};
-TrainingConfig trainingConfigFromJson(const Json& value, const std::string& origin);
-Json toJson(const TrainingConfig& config);
-/// Of the step that follows `step` finished ones, by the configuration's schedule.
-double learningRateAt(const TrainingConfig& config, int64_t step);
 
 struct TrainRequest {
   Json config;  ///< {"family", "name", "model", "training"}
@@ -43,6 +24,10 @@ struct TrainRequest {
   std::string device = "cpu";  ///< cpu, cuda
   uint64_t seed = 1;
   std::string command;  ///< for the model's provenance
+  /// Which of several processes this is, all of which train the same model on parts of the same
+  /// batches. The first one alone writes files.
+  ProcessRank process;
+  Execution execution = Execution::Engine;  ///< the reference: the plain libtorch path
 };
 
 struct TrainResult {

@@ -1,8 +1,10 @@
+#include "model/training_config.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "model/trainer.h"
+#include "base/error.h"
 
 namespace marey {
 namespace {
@@ -20,6 +22,7 @@ TrainingConfig trainingConfigFromJson(const Json& value, const std::string& orig
   c.windowS = reader.optional("window_s", c.windowS);
   c.hopS = reader.optional("hop_s", c.hopS);
   c.batch = reader.optional("batch", c.batch);
+  c.accumulate = reader.optional("accumulate", c.accumulate);
   c.learningRate = reader.optional("learning_rate", c.learningRate);
   c.schedule = reader.optional("schedule", c.schedule);
   c.warmupSteps = reader.optional("warmup_steps", c.warmupSteps);
@@ -36,6 +39,8 @@ TrainingConfig trainingConfigFromJson(const Json& value, const std::string& orig
   require(c.windowS > 0, reader, "window_s", "seconds above zero", c.windowS);
   require(c.hopS > 0, reader, "hop_s", "seconds above zero", c.hopS);
   require(c.batch >= 1, reader, "batch", "at least 1", c.batch);
+  require(c.accumulate >= 1 && c.accumulate <= c.batch, reader, "accumulate",
+          "from 1 to training.batch", c.accumulate);
   require(c.learningRate > 0, reader, "learning_rate", "a rate above zero", c.learningRate);
   require(c.warmupSteps >= 1, reader, "warmup_steps", "at least 1",
           static_cast<double>(c.warmupSteps));
@@ -55,6 +60,7 @@ Json toJson(const TrainingConfig& c) {
   return {{"window_s", c.windowS},
           {"hop_s", c.hopS},
           {"batch", c.batch},
+          {"accumulate", c.accumulate},
           {"learning_rate", c.learningRate},
           {"schedule", c.schedule},
           {"warmup_steps", c.warmupSteps},

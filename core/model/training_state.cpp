@@ -7,34 +7,12 @@
 namespace marey {
 namespace {
 
-constexpr double kBeta1 = 0.9, kBeta2 = 0.999, kEpsilon = 1e-8;
-
 void restore(torch::Tensor& target, const TensorFile& file, const std::string& key,
              const std::string& origin) {
   target.copy_(fromTensor(file.get(key, target.sizes().vec(), origin)));
 }
 
 }  // namespace
-
-Adam::Adam(const torch::nn::Module& module) {
-  for (const auto& item : module.named_parameters())
-    slots[item.key()] = {item.value(), torch::zeros_like(item.value()),
-                         torch::zeros_like(item.value())};
-}
-
-void Adam::step(double rate, int64_t count) {
-  const torch::NoGradGuard guard;
-  const double correction1 = 1.0 - std::pow(kBeta1, static_cast<double>(count));
-  const double correction2 = 1.0 - std::pow(kBeta2, static_cast<double>(count));
-  for (auto& [name, slot] : slots) {
-    const auto& gradient = slot.parameter.grad();
-    if (!gradient.defined()) continue;
-    slot.mean.mul_(kBeta1).add_(gradient, 1.0 - kBeta1);
-    slot.square.mul_(kBeta2).addcmul_(gradient, gradient, 1.0 - kBeta2);
-    const auto denominator = (slot.square.sqrt() / std::sqrt(correction2)).add_(kEpsilon);
-    slot.parameter.addcdiv_(slot.mean, denominator, -rate / correction1);
-  }
-}
 
 void saveState(const std::filesystem::path& path, const TrainingState& state,
                const torch::nn::Module& net, const Adam& adam, const Json& identity) {

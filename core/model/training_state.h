@@ -7,23 +7,10 @@
 #include <string>
 
 #include "base/json.h"
+#include "model/adam.h"
 #include "model/trainable.h"
 
 namespace marey {
-
-/// Adam (Kingma and Ba 2015) over named parameters. Its own few lines rather than libtorch's
-/// optimiser, whose stored state changed its form between 1.13 and 2.x.
-class Adam {
- public:
-  explicit Adam(const torch::nn::Module& module);
-  /// One step with the gradients in place; `count` is the number of this step, from 1.
-  void step(double rate, int64_t count);
-
-  struct Slot {
-    torch::Tensor parameter, mean, square;
-  };
-  std::map<std::string, Slot> slots;
-};
 
 struct TrainingState {
   int64_t step = 0;      ///< steps done

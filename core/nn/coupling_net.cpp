@@ -65,6 +65,13 @@ torch::Tensor CouplingNet::hiddenOutput(const torch::Tensor& input, RecurrentSta
   return output;
 }
 
+std::vector<torch::Tensor> CouplingNet::weights() const {
+  auto out = m_weights;
+  out.push_back(m_outWeight);
+  out.push_back(m_outBias);
+  return out;
+}
+
 torch::Tensor CouplingNet::forward(const torch::Tensor& input, RecurrentState& state) const {
   return torch::nn::functional::linear(hiddenOutput(input, state), m_outWeight, m_outBias);
 }

@@ -49,12 +49,12 @@ class InvertibleLinear : public torch::nn::Module {
   /// Becomes the given matrix [D, D]. Throws NumericError when it is singular.
   void assign(const torch::Tensor& matrix);
   bool lu() const { return m_lu; }
+  torch::Tensor logDet() const;
 
   torch::Tensor free;                                    ///< [D, D]; only without LU
   torch::Tensor permutation, lower, upper, logS, signS;  ///< only with LU
 
  private:
-  torch::Tensor logDet() const;
   bool m_lu;
 };
 
@@ -70,6 +70,9 @@ class CouplingNet : public torch::nn::Module {
  public:
   CouplingNet(int64_t inputs, int64_t outputs, CouplingNetSpec spec, at::Generator& generator);
   torch::Tensor forward(const torch::Tensor& input, RecurrentState& state) const;
+  /// Per layer input, recurrent, two biases (plain layers: input and bias); the output layer's
+  /// last.
+  std::vector<torch::Tensor> weights() const;
 
  private:
   torch::Tensor hiddenOutput(const torch::Tensor& input, RecurrentState& state) const;
@@ -89,6 +92,7 @@ class AffineCoupling : public torch::nn::Module {
                        RecurrentState& state) const;
   torch::Tensor toData(const torch::Tensor& z, const torch::Tensor& conditioning,
                        RecurrentState& state) const;
+  const CouplingNet& net() const { return *m_net; }
 
  private:
   struct ShiftScale {
@@ -126,13 +130,14 @@ class Flow : public torch::nn::Module {
   /// normalises what reaches it.
   void initialise(const torch::Tensor& x, const torch::Tensor& conditioning, Start start);
   const FlowSpec& spec() const { return m_spec; }
-
- private:
   struct Step {
     std::shared_ptr<ActNorm> actnorm;
     std::shared_ptr<InvertibleLinear> linear;
     std::shared_ptr<AffineCoupling> coupling;
   };
+  const std::vector<Step>& steps() const { return m_steps; }
+
+ private:
   FlowSpec m_spec;
   std::vector<Step> m_steps;
 };

@@ -63,16 +63,32 @@ torch::Tensor Net::plainConditioning(const Context& context) const {
   return torch::cat({(frames * context.keep.unsqueeze(-1)).flatten(-2), context.control}, -1);
 }
 
-nn::Transformed Net::toLatent(const torch::Tensor& x, const Context& context,
-                              nn::FlowState& state) const {
-  if (!m_base) return m_flow->toLatent(x, plainConditioning(context), state);
+nn::Transformed Net::toLatentBy(const FlowPass& pass, const torch::Tensor& x,
+                                const Context& context) const {
+  nn::FlowConditioning seen{.blockWidth = m_config.poseDim};
+  // These nets see the history frame by frame, first of all.
+  if (m_config.poseBase != "kinematic") seen.keep = context.keep;
+  if (!m_base) {
+    seen.values = plainConditioning(context);
+    return pass(x, seen);
+  }
   const int64_t batch = x.size(0), frames = x.size(1);
   const Foresight foresight = m_base->foresee(flattened(context));
   const auto e = m_base->toInnovation(x.flatten(0, 1), foresight);
   const auto innovation = e.value.view({batch, frames, -1});
   const auto [passed, rest] = split(innovation);
-  auto out = m_flow->toLatent(rest, seenBy(foresight, passed), state);
+  seen.values = seenBy(foresight, passed);
+  const auto out = pass(rest, seen);
   return {torch::cat({passed, out.value}, -1), out.logDet + e.logDet.view({batch, frames})};
+}
+
+nn::Transformed Net::toLatent(const torch::Tensor& x, const Context& context,
+                              nn::FlowState& state) const {
+  return toLatentBy(
+      [&](const torch::Tensor& data, const nn::FlowConditioning& seen) {
+        return m_flow->toLatent(data, seen.values, state);
+      },
+      x, context);
 }
 
 std::pair<torch::Tensor, torch::Tensor> Net::split(const torch::Tensor& innovation) const {
@@ -96,17 +112,26 @@ torch::Tensor Net::toData(const torch::Tensor& z, const Context& context,
   return m_base->toPose(e.flatten(0, 1), foresight).view({batch, frames, -1});
 }
 
-torch::Tensor Net::logLikelihood(const TrainingBatch& batch, at::Generator* dropout) {
+torch::Tensor Net::drawDropout(const TrainingBatch& batch, at::Generator& generator) const {
+  if (m_config.dropout <= 0.0) return {};
+  const int64_t frames = batch.pose.size(1) - m_config.tau - m_config.lookahead;
+  // Drawn on the CPU, so that a device changes no batch.
+  const auto uniform = torch::rand({batch.pose.size(0), frames, m_config.tau}, generator);
+  return uniform.ge(m_config.dropout).to(batch.pose.options());
+}
+
+torch::Tensor Net::logLikelihood(const TrainingBatch& batch) {
   const int64_t frames = batch.pose.size(1) - m_config.tau - m_config.lookahead;
   const auto poses = batch.pose.narrow(1, 0, m_config.tau + frames);
   Context context = contextOf(poses, batch.control);
-  if (dropout != nullptr && m_config.dropout > 0.0) {
-    // Drawn on the CPU, so that a device changes no batch.
-    const auto uniform = torch::rand({batch.pose.size(0), frames, m_config.tau}, *dropout);
-    context.keep = uniform.ge(m_config.dropout).to(batch.pose.options());
-  }
-  nn::FlowState state;
-  const auto latent = toLatent(poses.narrow(1, m_config.tau, frames), context, state);
+  context.keep = batch.keep;
+  const auto pass = [&](const torch::Tensor& x, const nn::FlowConditioning& seen) {
+    if (execution == Execution::Engine && nn::takesFastPath(*m_flow, x, seen))
+      return nn::fastToLatent(*m_flow, x, seen);
+    nn::FlowState state;
+    return m_flow->toLatent(x, seen.values, state);
+  };
+  const auto latent = toLatentBy(pass, poses.narrow(1, m_config.tau, frames), context);
   return nn::baseLogDensity(latent.value, m_config.degreesOfFreedom()) + latent.logDet;
 }
 

@@ -2,13 +2,14 @@
 // and the control. Works on standardised values.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <utility>
 
 #include "model/trainable.h"
 #include "moglow/config.h"
 #include "moglow/pose_base.h"
-#include "nn/flow.h"
+#include "nn/fast_flow.h"
 
 namespace marey::moglow {
 
@@ -20,7 +21,8 @@ class Net : public TrainableModel {
   // TrainableModel
   int64_t context() const override { return m_config.tau; }
   int64_t lookahead() const override { return m_config.lookahead; }
-  torch::Tensor logLikelihood(const TrainingBatch& batch, at::Generator* dropout) override;
+  torch::Tensor drawDropout(const TrainingBatch& batch, at::Generator& generator) const override;
+  torch::Tensor logLikelihood(const TrainingBatch& batch) override;
   Json initialise(const TrainingFrames& frames) override;
 
   /// Conditioning of a run of frames.
@@ -39,6 +41,11 @@ class Net : public TrainableModel {
   const Config& config() const { return m_config; }
 
  private:
+  using FlowPass = std::function<nn::Transformed(const torch::Tensor& x,
+                                                 const nn::FlowConditioning& conditioning)>;
+  /// To latent, with the flow run by `pass`.
+  nn::Transformed toLatentBy(const FlowPass& pass, const torch::Tensor& x,
+                             const Context& context) const;
   torch::Tensor plainConditioning(const Context& context) const;
   /// Innovations [B, T, D] as the channels that pass the flow by and those that it models.
   std::pair<torch::Tensor, torch::Tensor> split(const torch::Tensor& innovation) const;

@@ -52,6 +52,26 @@ class Bench(Case):
         self.assertLess(rounded["max_abs_difference"], 0.5)
         self.assertNotIn("ratio", self.model_bench("score", "--no-reference"))
 
+    def test_training_measures_both_paths_and_finds_the_same_loss(self):
+        config = self.tiny_config(model={"hidden": 32})
+        result = self.run_json("bench", "train", "--config", config, "--batch", 6, "--frames", 10,
+                               "--steps", 3)
+        self.assertEqual((result["batch"], result["frames"]), (6, 10))
+        for key in ("ms_per_step", "best_ms_per_step", "ms_per_frame", "reference_ms_per_step",
+                    "reference_ms_per_frame", "gflops", "sgemm_gflops", "share_of_sgemm"):
+            self.assertIsInstance(result[key], float, key)
+            self.assertGreater(result[key], 0.0, key)
+        self.assertAlmostEqual(result["ratio"] * result["ms_per_frame"],
+                               result["reference_ms_per_frame"], places=6)
+        self.assertAlmostEqual(result["ms_per_step"], 10 * result["ms_per_frame"], places=6)
+        self.assertAlmostEqual(result["frames_per_s"] * result["ms_per_step"], 60000.0, places=3)
+        self.assertAlmostEqual(
+            result["gflops"], 6e-9 * result["parameters"] * result["frames_per_s"], places=6)
+        self.assertGreater(abs(result["loss_nats_per_frame"]), 10.0)
+        self.assertLess(result["max_abs_difference"], 1e-3)
+        self.assertNotIn("ratio", self.run_json("bench", "train", "--config", config, "--batch",
+                                                2, "--frames", 3, "--no-reference"))
+
     def test_a_crowd_becomes_lines(self):
         words = ["bench", "render", "--frames", "1", "--size", "64x64"]
         self.assertEqual(self.run_json(*words, "--motions", "2")["drawn_as"], "capsules")

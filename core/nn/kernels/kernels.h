@@ -63,6 +63,41 @@ struct CouplingBlock {
   long rows = 0;
 };
 
+/// Rows of one frame of a recurrent layer that is trained. Matrices of units are [rows, units]
+/// without gaps; gates come in PyTorch's order, each `units` wide. Forward turns what the products
+/// gave into activations, in place; backward turns these into the gradients of what it was given.
+struct TrainingRows {
+  float* gates = nullptr;           ///< [rows, gates * units], `gateStride` apart
+  const float* bias = nullptr;      ///< [gates * units]; forward
+  float* biasGradient = nullptr;    ///< [4 * units], added to; GRU: r, z, n and that of fromState
+  const float* previous = nullptr;  ///< LSTM cell, GRU hidden of the frame before; null: zeros
+  float* cell = nullptr;            ///< LSTM
+  float* hidden = nullptr;          ///< forward
+  float* fromState = nullptr;       ///< GRU: what the state gives to n; backward: its gradient
+  const float* gradient = nullptr;  ///< of the loss by `hidden`; backward
+  /// Backward. LSTM: the gradient by the cell, of later frames in, for earlier ones out. GRU: the
+  /// gradient by the frame before's hidden, added to; null at the first frame.
+  float* carried = nullptr;
+  long gateStride = 0;
+  long units = 0;  ///< a multiple of kLanes
+  long rows = 0;
+};
+
+/// One step of Adam on `blocks` * 16 values, whose gradients are first clamped to +-limit and then
+/// scaled.
+struct AdamStep {
+  float* parameter = nullptr;
+  float* mean = nullptr;
+  float* square = nullptr;
+  const float* gradient = nullptr;
+  float limit = 0.f, gradientScale = 1.f;
+  float beta1 = 0.f, beta2 = 0.f, epsilon = 0.f;
+  float rest1 = 0.f, rest2 = 0.f;  ///< 1 - beta: a difference in float32 would be too coarse
+  float rate = 0.f;                ///< with the correction of the mean
+  float squareScale = 0.f;         ///< correction of the square's root
+  long blocks = 0;
+};
+
 struct Kernels {
   const char* name;
   void (*product)(const PanelProduct&);
@@ -76,6 +111,11 @@ struct Kernels {
   /// (sigmoid of arguments below -87 is not smaller than that of -87).
   void (*sigmoid)(const float* x, float* y, long blocks);
   void (*tanh)(const float* x, float* y, long blocks);
+  void (*lstmForward)(const TrainingRows&);
+  void (*lstmBackward)(const TrainingRows&);
+  void (*gruForward)(const TrainingRows&);
+  void (*gruBackward)(const TrainingRows&);
+  void (*adam)(const AdamStep&);
 };
 
 /// The best set that this processor runs.

@@ -257,6 +257,12 @@ void tanhOf(const float* x, float* y, long blocks) {
     store(y + i, hyperbolicTangent(load(x + i)).value());
 }
 
+}  // namespace
+
+#include "nn/kernels/training_body.h"
+
+namespace {
+
 constexpr marey::nn::Kernels kernelsNamed(const char* name) {
   return {name,
           product<FloatWeights>,
@@ -267,7 +273,12 @@ constexpr marey::nn::Kernels kernelsNamed(const char* name) {
           toData,
           toLatent,
           sigmoidOf,
-          tanhOf};
+          tanhOf,
+          lstmForward,
+          lstmBackward,
+          gruForward,
+          gruBackward,
+          adam};
 }
 
 }  // namespace

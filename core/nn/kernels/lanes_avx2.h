@@ -38,6 +38,9 @@ inline Lanes operator*(Lanes x, Lanes y) {
 inline Lanes operator/(Lanes x, Lanes y) {
   return {_mm256_div_ps(x.a, y.a), _mm256_div_ps(x.b, y.b)};
 }
+inline Lanes squareRoot(Lanes x) {
+  return {_mm256_sqrt_ps(x.a), _mm256_sqrt_ps(x.b)};
+}
 /// NaN in `x` stays NaN.
 inline Lanes smaller(Lanes x, Lanes y) {
   return {_mm256_min_ps(y.a, x.a), _mm256_min_ps(y.b, x.b)};

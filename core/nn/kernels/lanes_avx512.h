@@ -37,6 +37,9 @@ inline Lanes operator*(Lanes a, Lanes b) {
 inline Lanes operator/(Lanes a, Lanes b) {
   return {_mm512_div_ps(a.v, b.v)};
 }
+inline Lanes squareRoot(Lanes a) {
+  return {_mm512_sqrt_ps(a.v)};
+}
 /// NaN in `a` stays NaN.
 inline Lanes smaller(Lanes a, Lanes b) {
   return {_mm512_min_ps(b.v, a.v)};

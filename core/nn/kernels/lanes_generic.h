@@ -47,6 +47,9 @@ inline Lanes operator*(Lanes a, Lanes b) {
 inline Lanes operator/(Lanes a, Lanes b) {
   return each([&](int i) { return a.v[i] / b.v[i]; });
 }
+inline Lanes squareRoot(Lanes a) {
+  return each([&](int i) { return std::sqrt(a.v[i]); });
+}
 /// NaN in `a` stays NaN.
 inline Lanes smaller(Lanes a, Lanes b) {
   return each([&](int i) { return b.v[i] < a.v[i] ? b.v[i] : a.v[i]; });

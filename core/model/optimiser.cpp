@@ -1,0 +1,97 @@
+#include "model/optimiser.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace marey {
+namespace {
+
+torch::Tensor scoredMask(const TrainableModel& net, const TrainingBatch& batch) {
+  const int64_t first = net.context(), ahead = net.lookahead();
+  return batch.mask.narrow(1, first, batch.mask.size(1) - first - ahead);
+}
+
+double normOf(const std::vector<torch::Tensor>& tensors) {
+  std::vector<torch::Tensor> norms;
+  for (const auto& t : tensors) norms.push_back(t.norm());
+  return norms.empty() ? 0.0 : torch::stack(norms).to(torch::kFloat64).norm().item<double>();
+}
+
+}  // namespace
+
+torch::Tensor sumOfLogLikelihood(TrainableModel& net, const TrainingBatch& batch) {
+  return (net.logLikelihood(batch) * scoredMask(net, batch)).sum();
+}
+
+double scoredFrames(const TrainableModel& net, const TrainingBatch& batch) {
+  return scoredMask(net, batch).sum().item<double>();
+}
+
+Optimiser::Optimiser(TrainableModel& net, const TrainingConfig& config, nn::ProcessGroup& group)
+    : adam(net, net.execution), m_net(net), m_config(config), m_group(group) {}
+
+double Optimiser::gradientsOf(const TrainingBatch& batch) {
+  const double frames = std::max(1.0, scoredFrames(m_net, batch));
+  const int64_t windows = batch.pose.size(0), parts = int64_t{m_config.accumulate},
+                rank = m_group.rank().rank, size = m_group.rank().size;
+  double loss = 0.0;
+  for (auto& p : m_net.parameters()) p.mutable_grad() = torch::Tensor();
+  for (int64_t part = rank * parts; part < (rank + 1) * parts; ++part) {
+    const int64_t first = windows * part / (size * parts),
+                  count = windows * (part + 1) / (size * parts) - first;
+    if (count == 0) continue;
+    // A share of the mean over the frames of the whole batch.
+    const auto share = -sumOfLogLikelihood(m_net, batch.narrow(first, count)) / frames;
+    const double value = share.item<double>();
+    loss += value;
+    if (std::isfinite(value)) share.backward();
+  }
+  return loss;
+}
+
+double Optimiser::summedOverProcesses(double loss) {
+  if (m_group.rank().size == 1) return loss;
+  const torch::NoGradGuard guard;
+  std::vector<torch::Tensor> parts;
+  auto parameters = m_net.parameters();
+  for (const auto& p : parameters)
+    parts.push_back((p.grad().defined() ? p.grad() : torch::zeros_like(p)).flatten());
+  parts.push_back(torch::full({1}, loss, parts.front().options()));
+  auto flat = torch::cat(parts);
+  m_group.sum(flat);
+  int64_t at = 0;
+  for (auto& p : parameters) {
+    p.mutable_grad() = flat.narrow(0, at, p.numel()).view_as(p);
+    at += p.numel();
+  }
+  return flat[at].item<double>();
+}
+
+double Optimiser::clip(GradientClip& out) const {
+  const torch::NoGradGuard guard;
+  std::vector<torch::Tensor> gradients;
+  for (const auto& p : m_net.parameters())
+    if (p.grad().defined()) gradients.push_back(p.grad());
+  const double raw = normOf(gradients);
+  double norm = raw;
+  // No value of a gradient is above its norm.
+  if (m_config.clipValue > 0 && raw > m_config.clipValue) {
+    out.limit = m_config.clipValue;
+    for (auto& g : gradients) g = g.clamp(-out.limit, out.limit);
+    norm = normOf(gradients);
+  }
+  if (m_config.clipNorm > 0 && norm > m_config.clipNorm) out.scale = m_config.clipNorm / norm;
+  return raw;
+}
+
+StepReport Optimiser::step(const TrainingBatch& batch, double rate, int64_t count) {
+  StepReport out;
+  out.lossNats = summedOverProcesses(gradientsOf(batch));
+  GradientClip limits;
+  out.norm = std::isfinite(out.lossNats) ? clip(limits) : out.lossNats;
+  out.taken = std::isfinite(out.lossNats) && std::isfinite(out.norm);
+  if (out.taken) adam.step(rate, count, limits);
+  return out;
+}
+
+}  // namespace marey

@@ -113,8 +113,12 @@ int MpiRanks::size() const {
 
 void MpiRanks::stopAll() {
   m_call->requestStop();
-  if (m_call->stopSent || !first()) return;
-  m_call->stopSent = true;
+  if (std::exchange(m_call->stopSent, true)) return;
+  if (!first()) {
+    // One that has done its share and waits would not be heard otherwise.
+    m_world->send(0, kStop);
+    return;
+  }
   for (int r = 1; r < size(); ++r)
     // Those that have said how they fared wait for the outcome alone.
     if (!m_call->fared[static_cast<size_t>(r)]) m_world->isend(r, kStop);
@@ -133,6 +137,10 @@ void MpiRanks::mindAtFirst(Progress& progress) {
     const RankFault fault = unpacked(told);
     m_call->fared[static_cast<size_t>(message->source())] = fault;
     if (fault.kind != RankFault::Kind::None) stopAll();
+  }
+  while (const auto message = m_world->iprobe(mpi::any_source, kStop)) {
+    m_world->recv(message->source(), kStop);
+    stopAll();
   }
   if (m_call->items == 0) return;
   m_call->progress[0] = m_call->own;

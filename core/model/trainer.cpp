@@ -46,6 +46,17 @@ std::string suspectLayer(const torch::nn::Module& net) {
   return fmt::format("{} (its largest weight is {:.3g})", largestName, largest);
 }
 
+/// Processes on one machine take its CUDA devices in turn.
+torch::Device deviceOf(const TrainRequest& request) {
+  if (request.device == "cpu") return torch::kCPU;
+  if (request.device != "cuda")
+    throw UsageError("--device: expected cpu or cuda, found '" + request.device + "'");
+  if (!torch::cuda::is_available())
+    throw UsageError("--device cuda: this libtorch sees no CUDA device");
+  const auto count = static_cast<int>(torch::cuda::device_count());
+  return {torch::kCUDA, static_cast<c10::DeviceIndex>(request.process.rank % count)};
+}
+
 /// One training run: what it is given, what it carries, what it writes.
 class Run {
  public:
@@ -55,15 +66,11 @@ class Run {
         m_family(familyNamed(request.config.value("family", ""), families, request.configOrigin)),
         m_config(trainingConfigFromJson(request.config.value("training", Json::object()),
                                         request.configOrigin)),
-        m_device(request.device == "cuda" ? torch::kCUDA : torch::kCPU),
+        m_device(deviceOf(request)),
         m_group(nn::joinProcesses(request.process,
                                   nn::meetingPoint(fs::weakly_canonical(request.run).string()))) {
     requireFinite(data.train, "training data");
     requireFinite(data.test, "test data");
-    if (request.device != "cpu" && request.device != "cuda")
-      throw UsageError("--device: expected cpu or cuda, found '" + request.device + "'");
-    if (request.device == "cuda" && !torch::cuda::is_available())
-      throw UsageError("--device cuda: this libtorch sees no CUDA device");
     m_trainee = m_family.makeTrainee(
         request.config.at("model"), request.configOrigin,
         {data.poseDim(), data.controlDim(), data.skeleton, data.standardiser}, request.seed);

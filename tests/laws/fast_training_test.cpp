@@ -177,17 +177,6 @@ struct NetRun {
   std::vector<Tensor> gradients;
 };
 
-/// Noise is far from what a base has learned, and large innovations round coarsely on either path.
-void expectAsExactAsThePlainPath(TrainableModel& net, int64_t poseDim) {
-  const NetRun fast(net, poseDim, Execution::Engine, torch::kFloat32),
-      plain(net, poseDim, Execution::Reference, torch::kFloat32),
-      exact(net, poseDim, Execution::Reference, torch::kFloat64);
-  const double error = fast.errorAgainst(exact);
-  EXPECT_GT(error, 0.0);
-  EXPECT_LT(error, 1e-3);
-  EXPECT_LT(error, 2.0 * plain.errorAgainst(exact) + 1e-5);
-}
-
 TEST(FastTrainingPath, HidesTheHistoryThatALinearBaseShows) {
   moglow::Config config;
   config.poseDim = 12;
@@ -201,7 +190,9 @@ TEST(FastTrainingPath, HidesTheHistoryThatALinearBaseShows) {
   makeLively(net, 9);
   for (auto& item : net.named_buffers())
     if (item.key() == "base.weight") item.value().normal_(0.0, 0.05, generator(4));
-  expectAsExactAsThePlainPath(net, 12);
+  const NetRun fast(net, 12, Execution::Engine, torch::kFloat32),
+      exact(net, 12, Execution::Reference, torch::kFloat64);
+  EXPECT_LT(fast.errorAgainst(exact), 2e-5);
 }
 
 TEST(FastTrainingPath, TrainsOnTheInnovationsOfAKinematicBase) {
@@ -211,7 +202,12 @@ TEST(FastTrainingPath, TrainsOnTheInnovationsOfAKinematicBase) {
   const Trainee trainee = moglow::family().makeTrainee(
       info.config, path, {info.poseDim, info.controlDim, info.skeleton, info.standardiser}, 1);
   loadWeights(*trainee.net, file, path);
-  expectAsExactAsThePlainPath(*trainee.net, info.poseDim);
+  const NetRun fast(*trainee.net, info.poseDim, Execution::Engine, torch::kFloat32),
+      plain(*trainee.net, info.poseDim, Execution::Reference, torch::kFloat32);
+  // Not float64: a base chooses regimes by thresholds. Noise is far from what it has learned, and
+  // large innovations round coarsely.
+  EXPECT_GT(fast.errorAgainst(plain), 0.0);
+  EXPECT_LT(fast.errorAgainst(plain), 5e-4);
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 #include "model/optimiser.h"
 
 #include <cmath>
+#include <cstdlib>
 
 #include <ATen/CPUGeneratorImpl.h>
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "moglow/net.h"
 
 namespace marey {
@@ -128,6 +130,30 @@ TEST(Adam, ItsFirstStepIsTheRateAgainstTheGradientsSign) {
   adam.step(0.25, 1);
   const auto expected = -0.25 * torch::linspace(-9.f, 8.f, 18).sign();
   EXPECT_LT((module.values - expected).abs().max().item<double>(), 1e-6);
+}
+
+TEST(TrainingConfig, ABatchHasNoMorePartsThanWindows) {
+  EXPECT_EQ(trainingConfigFromJson({{"batch", 8}, {"accumulate", 8}}, "c.json").accumulate, 8);
+  for (const int parts : {0, 9})
+    EXPECT_THROW(trainingConfigFromJson({{"batch", 8}, {"accumulate", parts}}, "c.json"),
+                 InputError);
+}
+
+TEST(MeetingPoint, IsWhatTheEnvironmentSaysOrMadeFromTheRun) {
+  unsetenv("MASTER_ADDR");
+  unsetenv("MASTER_PORT");
+  const nn::MeetingPoint made = nn::meetingPoint("runs/a");
+  EXPECT_EQ(made.host, "127.0.0.1");
+  EXPECT_EQ(nn::meetingPoint("runs/a").port, made.port);
+  EXPECT_NE(nn::meetingPoint("runs/b").port, made.port);
+  setenv("MASTER_ADDR", "node7", 1);
+  setenv("MASTER_PORT", "4321", 1);
+  EXPECT_EQ(nn::meetingPoint("runs/a").host, "node7");
+  EXPECT_EQ(nn::meetingPoint("runs/a").port, 4321);
+  for (const char* bad : {"0", "70000", "12a", ""}) {
+    setenv("MASTER_PORT", bad, 1);
+    EXPECT_THROW(nn::meetingPoint("runs/a"), InputError) << bad;
+  }
 }
 
 }  // namespace

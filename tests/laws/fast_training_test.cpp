@@ -89,7 +89,9 @@ class Paths {
     const auto names = m_flow.named_parameters().keys();
     for (size_t i = 0; i < names.size(); ++i) {
       // One frame has nothing to remember.
-      if (m_x.size(1) > 1) EXPECT_GT(expected[i].abs().max().item<double>(), 0.0) << names[i];
+      if (m_x.size(1) > 1) {
+        EXPECT_GT(expected[i].abs().max().item<double>(), 0.0) << names[i];
+      }
       EXPECT_LT(relativeError(found[i], expected[i]), tolerance) << names[i];
     }
   }

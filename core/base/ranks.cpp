@@ -20,7 +20,7 @@ std::string Ranks::fromFirst(const std::function<std::string()>& make) {
   return make();
 }
 
-void Ranks::whenStopped(std::function<void()>) {}
+void Ranks::whenStopped(const std::function<void()>&) {}
 
 void Ranks::together(const std::function<void()>& body) {
   body();

@@ -46,7 +46,7 @@ class Ranks {
   virtual void together(const std::function<void()>& body);
   /// Of several processes: `say` is called at the first one as soon as it is told to stop, on any
   /// thread. A launcher that lost a process may leave no time for more.
-  virtual void whenStopped(std::function<void()> say);
+  virtual void whenStopped(const std::function<void()>& say);
 };
 
 /// Items of one rank's share: consecutive; the first ranks have one more where they cannot all have

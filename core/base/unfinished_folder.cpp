@@ -22,7 +22,7 @@ bool isThere(const fs::path& path) {
   return fs::exists(path, ec);
 }
 
-fs::path withoutSlash(fs::path path) {
+fs::path withoutSlash(const fs::path& path) {
   return path.filename().empty() ? path.parent_path() : path;
 }
 

@@ -275,8 +275,8 @@ std::string MpiRanks::fromFirst(const std::function<std::string()>& make) {
   return text;
 }
 
-void MpiRanks::whenStopped(std::function<void()> say) {
-  m_call->whenStopped = std::move(say);
+void MpiRanks::whenStopped(const std::function<void()>& say) {
+  m_call->whenStopped = say;
 }
 
 void MpiRanks::together(const std::function<void()>& body) {

@@ -38,7 +38,7 @@ class MpiRanks final : public Ranks {
   std::vector<std::string> gather(size_t items, const Share& work, Progress& progress) override;
   std::string fromFirst(const std::function<std::string()>& make) override;
   void together(const std::function<void()>& body) override;
-  void whenStopped(std::function<void()> say) override;
+  void whenStopped(const std::function<void()>& say) override;
 
  private:
   struct Call;  ///< what is known of the call under way

@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "families.h"
+#include "gui/gui_support.h"
 
 #include "base/atomic_file.h"
-#include "gui/gui_support.h"
 #include "model/model_bench.h"
 
 namespace marey::gui {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "motion/kinematics.h"
 
 namespace marey {
 namespace {
@@ -11,11 +12,14 @@ namespace {
 /// Frame `t` of the result lies between source frames `index` and `index + 1`.
 struct Blend {
   size_t index = 0;
-  float weight = 0.0f;  ///< of frame index + 1
+  float weight = 0.0f;  ///< of frame index + 1; 0: frame `index` itself
 };
 
 /// Slack for rates whose quotient is not exact in binary: a millionth of a source frame.
 constexpr double kSlack = 1e-6;
+
+/// Positions further than this from those of their transforms are not made of them, metres.
+constexpr float kOwnPositionsM = 1e-4f;
 
 std::vector<Blend> blends(int frames, double fromFps, double toFps) {
   const double last = frames - 1;
@@ -30,25 +34,51 @@ std::vector<Blend> blends(int frames, double fromFps, double toFps) {
   return out;
 }
 
-template <typename T, typename Mix>
-std::vector<T> blended(const std::vector<T>& values, size_t width, const std::vector<Blend>& plan,
-                       const Mix& mix) {
-  std::vector<T> out;
+/// Between p1 and p2. Of differences, so that what does not move stays exactly where it is.
+Vec3 catmullRom(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3, float u) {
+  const Vec3 in = 0.5f * (p2 - p0), out = 0.5f * (p3 - p1), chord = p2 - p1;
+  return p1 + u * (in + u * ((3.0f * chord - 2.0f * in - out) + u * (in + out - 2.0f * chord)));
+}
+
+std::vector<Vec3> cubicBlended(const std::vector<Vec3>& values, size_t width,
+                               const std::vector<Blend>& plan) {
+  const size_t frames = values.size() / width;
+  std::vector<Vec3> out;
   out.reserve(plan.size() * width);
-  for (const Blend& b : plan)
+  for (const auto& [index, weight] : plan)
     for (size_t j = 0; j < width; ++j) {
-      const T& from = values[b.index * width + j];
-      out.push_back(b.weight == 0.0f ? from
-                                     : mix(from, values[(b.index + 1) * width + j], b.weight));
+      const auto at = [&](size_t t) -> const Vec3& { return values[t * width + j]; };
+      if (weight == 0.0f) {
+        out.push_back(at(index));
+        continue;
+      }
+      const Vec3 &p1 = at(index), &p2 = at(index + 1);
+      // Beyond an end the motion goes straight on: the tangent there is that of the last chord.
+      const Vec3 p0 = index > 0 ? at(index - 1) : Vec3(p1 - (p2 - p1));
+      const Vec3 p3 = index + 2 < frames ? at(index + 2) : Vec3(p2 + (p2 - p1));
+      out.push_back(catmullRom(p0, p1, p2, p3, weight));
     }
   return out;
 }
 
-Vec3 mixPositions(const Vec3& a, const Vec3& b, float weight) {
-  return a + weight * (b - a);
+std::vector<Quat> slerped(const std::vector<Quat>& values, size_t width,
+                          const std::vector<Blend>& plan) {
+  std::vector<Quat> out;
+  out.reserve(plan.size() * width);
+  for (const auto& [index, weight] : plan)
+    for (size_t j = 0; j < width; ++j) {
+      const Quat& from = values[index * width + j];
+      out.push_back(
+          weight == 0.0f ? from : from.slerp(weight, values[(index + 1) * width + j]).normalized());
+    }
+  return out;
 }
-Quat mixRotations(const Quat& a, const Quat& b, float weight) {
-  return a.slerp(weight, b).normalized();
+
+bool madeOfTransforms(const Clip& clip) {
+  const std::vector<Vec3> made = forwardKinematics(*clip.skeleton, *clip.transforms);
+  return made.size() == clip.positions.size() &&
+         std::equal(made.begin(), made.end(), clip.positions.begin(),
+                    [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kOwnPositionsM; });
 }
 
 }  // namespace
@@ -61,10 +91,18 @@ Clip resampled(const Clip& clip, double fps) {
   const std::vector<Blend> plan = blends(clip.frameCount(), clip.fps, fps);
   Clip out = clip;
   out.fps = fps;
-  out.positions = blended(clip.positions, width, plan, mixPositions);
   if (clip.transforms)
-    out.transforms = {blended(clip.transforms->rotations, width, plan, mixRotations),
-                      blended(clip.transforms->translations, width, plan, mixPositions)};
+    out.transforms = {slerped(clip.transforms->rotations, width, plan),
+                      cubicBlended(clip.transforms->translations, width, plan)};
+  if (!clip.transforms || !madeOfTransforms(clip)) {
+    out.positions = cubicBlended(clip.positions, width, plan);
+    return out;
+  }
+  out.positions = forwardKinematics(*clip.skeleton, *out.transforms);
+  for (size_t k = 0; k < plan.size(); ++k)
+    if (plan[k].weight == 0.0f)
+      std::copy_n(clip.positions.begin() + static_cast<long>(plan[k].index * width), width,
+                  out.positions.begin() + static_cast<long>(k * width));
   return out;
 }
 

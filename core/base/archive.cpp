@@ -7,6 +7,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 
 namespace marey {
 namespace {
@@ -49,7 +50,8 @@ void checkEntry(const zip_stat_t& stat, size_t allowed, const Place& place) {
       ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_COMP_METHOD;
   if ((stat.valid & kNeeded) != kNeeded) throw InputError(place, "an entry with a size", "none");
   if (stat.comp_method != ZIP_CM_STORE && stat.comp_method != ZIP_CM_DEFLATE)
-    throwInput(place, "a stored or deflated entry", "compression method {}", stat.comp_method);
+    throwInput(place, "a stored or deflated entry (as numpy.savez and torch.save write)",
+               "compression method {}", stat.comp_method);
   if (stat.size > allowed)
     throwInput(place, fmt::format("at most {} bytes unpacked", allowed), "{}", stat.size);
   if (stat.size / 1032 > stat.comp_size + 1)
@@ -61,15 +63,21 @@ void checkEntry(const zip_stat_t& stat, size_t allowed, const Place& place) {
 
 std::map<std::string, std::string> parseArchive(std::string_view bytes, const std::string& origin,
                                                 size_t maxBytes) {
-  // libzip takes nothing at all for an archive without entries.
-  if (bytes.empty()) throw InputError({.path = origin}, "a zip archive", "an empty file");
+  const bool zip = bytes.starts_with("PK");
+  if (!zip) throw InputError({.path = origin}, "a zip archive", describeContent(bytes));
   ZipErrorText error;
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error.error);
   if (source == nullptr) throw InputError({.path = origin}, "a zip archive", error.text());
   Zip archive(zip_open_from_source(source, ZIP_RDONLY | ZIP_CHECKCONS, &error.error), zip_discard);
   if (!archive) {
     zip_source_free(source);
-    throw InputError({.path = origin}, "a zip archive", error.text());
+    const int code = zip_error_code_zip(&error.error);
+    if (code == ZIP_ER_EXISTS)
+      throw InputError({.path = origin}, "a zip archive with every name once", "a name twice");
+    // "Not a zip archive" is what libzip says of one whose end is missing.
+    throw InputError({.path = origin}, "a whole zip archive",
+                     "one that is damaged or cut (was the download complete?)" +
+                         (code == ZIP_ER_NOZIP ? "" : ": " + error.text()));
   }
   std::map<std::string, std::string> out;
   size_t total = 0;

@@ -1,80 +1,108 @@
 #include "base/npy.h"
 
+#include <algorithm>
 #include <cstring>
 
-#include "base/archive.h"
-#include "base/atomic_file.h"
+#include "base/npy_header.h"
+#include "base/npy_text.h"
 
 namespace marey {
 namespace {
 
-constexpr std::string_view kMagic{"\x93NUMPY", 6};
-
-struct Header {
-  std::string descr;
-  bool fortran = false;
-  std::vector<int64_t> shape;
-};
-
-/// What follows "'key':" in a header, without leading blanks.
-std::string_view valueOf(std::string_view header, std::string_view key, const Place& place) {
-  const std::string wanted = fmt::format("'{}'", key);
-  size_t at = header.find(wanted);
-  if (at != std::string_view::npos) at = header.find_first_not_of(' ', at + wanted.size());
-  if (at == std::string_view::npos || header[at] != ':')
-    throw InputError(place, wanted + " in the NPY header", "none");
-  at = header.find_first_not_of(' ', at + 1);
-  return at == std::string_view::npos ? std::string_view() : header.substr(at);
+/// The values in row-major order and this machine's byte order. `unit`: what is swapped as one.
+std::vector<std::byte> rowMajor(std::string_view bytes, const NpyHeader& header, size_t unit) {
+  const size_t item = header.itemBytes;
+  const auto count = static_cast<size_t>(header.count());
+  std::vector<std::byte> out(count * item);
+  const auto rank = header.shape.size();
+  if (!header.fortranOrder || rank < 2) {
+    if (!out.empty()) std::memcpy(out.data(), bytes.data(), out.size());
+  } else {
+    std::vector<int64_t> index(rank, 0);
+    for (size_t i = 0; i < count; ++i) {
+      int64_t from = 0;
+      for (size_t d = rank; d-- > 0;) from = from * header.shape[d] + index[d];
+      std::memcpy(out.data() + i * item, bytes.data() + static_cast<size_t>(from) * item, item);
+      for (size_t d = rank; d-- > 0;) {
+        if (++index[d] < header.shape[d]) break;
+        index[d] = 0;
+      }
+    }
+  }
+  if (header.bigEndian && unit > 1)
+    for (size_t at = 0; at + unit <= out.size(); at += unit)
+      std::reverse(out.begin() + static_cast<std::ptrdiff_t>(at),
+                   out.begin() + static_cast<std::ptrdiff_t>(at + unit));
+  return out;
 }
 
-/// The text between two characters at the start of `value`.
-std::string between(std::string_view value, char open, char close, const char* what,
-                    const Place& place) {
-  const size_t end = value.find(close, 1);
-  if (value.empty() || value[0] != open || end == std::string_view::npos)
-    throw InputError(place, what, fmt::format("'{}'", value.substr(0, 60)));
-  return std::string(value.substr(1, end - 1));
-}
-
-Header parseHeader(std::string_view text, const Place& place) {
-  Header out;
-  out.descr = between(valueOf(text, "descr", place), '\'', '\'', "a plain number type", place);
-  const std::string_view order = valueOf(text, "fortran_order", place);
-  out.fortran = order.starts_with("True");
-  if (!out.fortran && !order.starts_with("False"))
-    throw InputError(place, "'fortran_order' True or False", "another value");
-  const std::string shape = between(valueOf(text, "shape", place), '(', ')', "a shape", place);
-  if (shape.find_first_not_of("0123456789L, ") != std::string::npos)
-    throw InputError(place, "a shape of whole numbers", shape.substr(0, 60));
-  uint64_t count = 1;
-  for (size_t i = 0; i < shape.size();) {
-    if (shape[i] < '0' || shape[i] > '9') {
-      ++i;
-      continue;
-    }
-    uint64_t value = 0;
-    for (; i < shape.size() && shape[i] >= '0' && shape[i] <= '9'; ++i) {
-      value = value * 10 + static_cast<uint64_t>(shape[i] - '0');
-      if (value > (uint64_t{1} << 40))
-        throw InputError(place, "a sensible shape", shape.substr(0, 60));
-    }
-    if (value > 0 && count > (uint64_t{1} << 40) / value)
-      throw InputError(place, "a sensible shape", shape.substr(0, 60));
-    count *= value;
-    out.shape.push_back(static_cast<int64_t>(value));
+template <typename From, typename To>
+Tensor widened(const std::vector<std::byte>& bytes, DType type, std::vector<int64_t> shape) {
+  Tensor out{.dtype = type, .shape = std::move(shape), .bytes = {}};
+  const size_t count = bytes.size() / sizeof(From);
+  out.bytes.resize(count * sizeof(To));
+  for (size_t i = 0; i < count; ++i) {
+    From from;
+    std::memcpy(&from, bytes.data() + i * sizeof(From), sizeof(From));
+    const To to = static_cast<To>(from);
+    std::memcpy(out.bytes.data() + i * sizeof(To), &to, sizeof(To));
   }
   return out;
 }
 
-DType dtypeOf(const std::string& descr, const Place& place) {
-  if (descr == "<f4") return DType::F32;
-  if (descr == "<f8") return DType::F64;
-  if (descr == "<f2") return DType::F16;
-  if (descr == "<i8") return DType::I64;
-  if (descr == "<i4") return DType::I32;
-  if (descr == "|u1" || descr == "|b1") return DType::U8;
-  throw InputError(place, "a little-endian number type (f2, f4, f8, i4, i8, u1)",
-                   "'" + descr + "'");
+bool anyAbove63Bits(const std::vector<std::byte>& littleEndian) {
+  for (size_t at = 7; at < littleEndian.size(); at += 8)
+    if ((littleEndian[at] & std::byte{0x80}) != std::byte{0}) return true;
+  return false;
+}
+
+/// Nothing for types that Tensor cannot hold.
+std::optional<Tensor> numbersOf(std::string_view data, const NpyHeader& header,
+                                const Place& place) {
+  const auto is = [&](char kind, size_t bytes) {
+    return header.kind == kind && header.itemBytes == bytes;
+  };
+  const auto plain = [&](DType type) {
+    return Tensor{
+        .dtype = type, .shape = header.shape, .bytes = rowMajor(data, header, header.itemBytes)};
+  };
+  if (is('f', 4)) return plain(DType::F32);
+  if (is('f', 8)) return plain(DType::F64);
+  if (is('f', 2)) return plain(DType::F16);
+  if (is('i', 8)) return plain(DType::I64);
+  if (is('i', 4)) return plain(DType::I32);
+  if (is('u', 1) || is('b', 1)) return plain(DType::U8);
+  if (header.kind != 'i' && header.kind != 'u') return std::nullopt;
+  const auto bytes = rowMajor(data, header, header.itemBytes);
+  if (is('i', 1)) return widened<int8_t, int32_t>(bytes, DType::I32, header.shape);
+  if (is('i', 2)) return widened<int16_t, int32_t>(bytes, DType::I32, header.shape);
+  if (is('u', 2)) return widened<uint16_t, int32_t>(bytes, DType::I32, header.shape);
+  if (is('u', 4)) return widened<uint32_t, int64_t>(bytes, DType::I64, header.shape);
+  if (!is('u', 8)) return std::nullopt;
+  if (anyAbove63Bits(bytes))
+    throw InputError(place, "whole numbers of up to 63 bits", "a larger uint64");
+  return widened<uint64_t, int64_t>(bytes, DType::I64, header.shape);
+}
+
+TextArray textOf(std::string_view data, const NpyHeader& header) {
+  const auto bytes = rowMajor(data, header, 1);
+  TextArray out{.shape = header.shape, .values = {}};
+  const auto count = static_cast<size_t>(header.count());
+  for (size_t i = 0; i < count; ++i) {
+    const std::string_view value(reinterpret_cast<const char*>(bytes.data()) + i * header.itemBytes,
+                                 header.itemBytes);
+    if (header.kind == 'U') {
+      out.values.push_back(utf8FromUtf32(value, header.bigEndian));
+    } else {
+      const size_t end = value.find_last_not_of('\0');
+      out.values.emplace_back(value.substr(0, end == std::string_view::npos ? 0 : end + 1));
+    }
+  }
+  return out;
+}
+
+std::string shapeText(const std::vector<int64_t>& shape) {
+  return Tensor{.dtype = DType::U8, .shape = shape, .bytes = {}}.shapeText();
 }
 
 const char* descrOf(DType type) {
@@ -95,97 +123,76 @@ const char* descrOf(DType type) {
   return "|u1";
 }
 
-void toRowMajor(Tensor& tensor) {
-  const size_t item = byteSize(tensor.dtype);
-  const auto rank = tensor.shape.size();
-  std::vector<std::byte> out(tensor.bytes.size());
-  std::vector<int64_t> index(rank, 0);
-  for (int64_t i = 0; i < tensor.count(); ++i) {
-    int64_t from = 0;
-    for (size_t d = rank; d-- > 0;) from = from * tensor.shape[d] + index[d];
-    std::memcpy(out.data() + static_cast<size_t>(i) * item,
-                tensor.bytes.data() + static_cast<size_t>(from) * item, item);
-    for (size_t d = rank; d-- > 0;) {
-      if (++index[d] < tensor.shape[d]) break;
-      index[d] = 0;
-    }
-  }
-  tensor.bytes = std::move(out);
+std::string headerText(const std::string& descr, const std::vector<int64_t>& shape) {
+  std::string sizes;
+  for (const int64_t size : shape) sizes += std::to_string(size) + ", ";
+  if (shape.size() > 1) sizes.resize(sizes.size() - 2);
+  std::string header =
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", descr, sizes);
+  header.resize((header.size() + 10 + 1 + 63) / 64 * 64 - 10 - 1, ' ');
+  header += '\n';
+  std::string out("\x93NUMPY\x01\0", 8);
+  out += static_cast<char>(header.size() & 0xFF);
+  out += static_cast<char>(header.size() >> 8);
+  return out + header;
 }
 
 }  // namespace
 
-Tensor parseNpy(std::string_view bytes, const std::string& origin) {
+std::string NpyArray::summary() const {
+  return type + " " + shapeText(shape);
+}
+
+NpyArray parseNpyArray(std::string_view bytes, const std::string& origin) {
   const Place place{.path = origin};
-  if (bytes.size() < 10 || bytes.substr(0, 6) != kMagic)
-    throw InputError(place, "an NPY array", "other content");
-  const int major = static_cast<unsigned char>(bytes[6]);
-  const size_t lengthBytes = major >= 2 ? 4 : 2;
-  if (bytes.size() < 8 + lengthBytes) throw InputError(place, "an NPY header", "a cut file");
-  uint32_t length = 0;
-  std::memcpy(&length, bytes.data() + 8, lengthBytes);
-  const size_t start = 8 + lengthBytes + length;
-  if (length > (1u << 20) || bytes.size() < start)
-    throw InputError(place, "an NPY header", "a cut file");
-  const Header header = parseHeader(bytes.substr(8 + lengthBytes, length), place);
-  Tensor out{.dtype = dtypeOf(header.descr, place), .shape = header.shape, .bytes = {}};
-  const size_t want = static_cast<size_t>(out.count()) * byteSize(out.dtype);
-  if (bytes.size() - start < want)
-    throwInput(place, fmt::format("{} bytes for shape {}", want, out.shapeText()), "{}",
-               bytes.size() - start);
-  out.bytes.resize(want);
-  if (want > 0) std::memcpy(out.bytes.data(), bytes.data() + start, want);
-  if (header.fortran && out.shape.size() > 1) toRowMajor(out);
+  const NpyHeader header = parseNpyHeader(bytes, place);
+  NpyArray out{.type = header.typeName(),
+               .shape = header.shape,
+               .numbers = {},
+               .text = {},
+               .bytesUsed = bytes.size()};
+  const bool text = header.kind == 'U' || header.kind == 'S' || header.kind == 'a';
+  const bool number = std::string_view("fiub").find(header.kind) != std::string_view::npos;
+  if (!text && !number) return out;
+  // A value of no bytes (empty text) could claim any number of values for nothing.
+  const uint64_t want = header.count() * std::max<uint64_t>(header.itemBytes, number ? 1 : 0);
+  const std::string_view data = bytes.substr(header.dataAt);
+  if (want > data.size() || (header.itemBytes == 0 && header.count() > 1'000'000))
+    throwInput(place, fmt::format("{} bytes for {}", want, out.summary()),
+               "{} (the file is damaged or cut)", data.size());
+  out.bytesUsed = header.dataAt + want;
+  if (text)
+    out.text = textOf(data, header);
+  else
+    out.numbers = numbersOf(data, header, place);
   return out;
 }
 
-std::map<std::string, Tensor> parseNpz(std::string_view bytes, const std::string& origin) {
-  std::map<std::string, Tensor> out;
-  for (const auto& [name, content] : parseArchive(bytes, origin)) {
-    if (name.empty() || name.back() == '/') continue;
-    const std::string key = name.ends_with(".npy") ? name.substr(0, name.size() - 4) : name;
-    out.emplace(key, parseNpy(content, fmt::format("{}, array '{}'", origin, key)));
-  }
-  return out;
-}
-
-std::map<std::string, Tensor> readNpz(const std::filesystem::path& path) {
-  return parseNpz(readFile(path), path.string());
+Tensor parseNpy(std::string_view bytes, const std::string& origin) {
+  NpyArray array = parseNpyArray(bytes, origin);
+  if (!array.numbers) throw InputError({.path = origin}, "an array of numbers", array.summary());
+  return std::move(*array.numbers);
 }
 
 std::string serialiseNpy(const Tensor& tensor) {
-  std::string shape;
-  for (const int64_t size : tensor.shape) shape += std::to_string(size) + ", ";
-  if (tensor.shape.size() > 1) shape.resize(shape.size() - 2);
-  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}",
-                                   descrOf(tensor.dtype), shape);
-  header.resize((header.size() + 10 + 1 + 63) / 64 * 64 - 10 - 1, ' ');
-  header += '\n';
-  std::string out(kMagic);
-  out += '\x01';
-  out += '\0';
-  out += static_cast<char>(header.size() & 0xFF);
-  out += static_cast<char>(header.size() >> 8);
-  out += header;
+  std::string out = headerText(descrOf(tensor.dtype), tensor.shape);
   out.append(reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size());
   return out;
 }
 
-void writeNpz(const std::filesystem::path& path, const std::map<std::string, Tensor>& arrays) {
-  std::map<std::string, std::string> files;
-  for (const auto& [key, tensor] : arrays) files[key + ".npy"] = serialiseNpy(tensor);
-  writeArchive(path, files);
-}
-
-Tensor textTensor(std::string_view text) {
-  Tensor out{.dtype = DType::U8, .shape = {static_cast<int64_t>(text.size())}, .bytes = {}};
-  out.bytes.resize(text.size());
-  if (!text.empty()) std::memcpy(out.bytes.data(), text.data(), text.size());
+std::string serialiseNpy(const TextArray& text) {
+  std::vector<std::u32string> values;
+  size_t longest = 1;  // NumPy has no text of length 0
+  for (const std::string& value : text.values) {
+    values.push_back(utf32FromUtf8(value));
+    longest = std::max(longest, values.back().size());
+  }
+  std::string out = headerText(fmt::format("<U{}", longest), text.shape);
+  for (std::u32string& value : values) {
+    value.resize(longest, U'\0');
+    out.append(reinterpret_cast<const char*>(value.data()), 4 * longest);
+  }
   return out;
-}
-
-std::string tensorText(const Tensor& tensor) {
-  return {reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size()};
 }
 
 }  // namespace marey

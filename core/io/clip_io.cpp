@@ -12,6 +12,7 @@
 #include "io/dog_text.h"
 #include "io/export_record.h"
 #include "io/gltf_writer.h"
+#include "io/joint_arrays.h"
 #include "io/npz_clips.h"
 #include "io/text.h"
 
@@ -62,6 +63,7 @@ const std::vector<ClipFormat>& clipFormats() {
       {"bvh", "Biovision hierarchy", {".bvh"}, canReadBvh, readBvh, writeBvh, true},
       {"amc", "Acclaim motion with its ASF skeleton", {".amc"}, canReadAmc, readAmc, nullptr},
       {"npz", "NumPy archive of clips", {".npz"}, canReadNpz, readNpzClips, writeNpzClip},
+      {"npy", "NumPy array of joint positions", {".npy"}, canReadNpy, readNpyClips, nullptr},
       {"dog-text",
        "27 joints as comma-separated text",
        {".txt"},

@@ -32,7 +32,8 @@ Finding unitFinding(const Clip& clip) {
 Finding upFinding(const Clip& clip, const UpGuess& guess) {
   const std::string note = noteBeginning(clip, "up axis ");
   if (!note.empty()) return {clip.source.up, note};
-  return {clip.source.up, clip.source.format == "bvh" ? guess.evidence : "the format fixes it"};
+  const bool guessed = clip.source.format == "bvh" || clip.source.format == "npy";
+  return {clip.source.up, guessed ? guess.evidence : "the format fixes it"};
 }
 
 void addReaderFaults(const Clip& clip, std::vector<Fault>& out) {

@@ -1,94 +1,21 @@
 #include <cmath>
 
-#include "base/npy.h"
-#include "io/known_skeletons.h"
+#include "io/joint_arrays.h"
 #include "io/normalise.h"
 #include "io/npz_clips.h"
-#include "motion/rotation.h"
+#include "io/npz_features.h"
+#include "io/npz_values.h"
 #include "motion/skeleton_fit.h"
 
 namespace marey::io {
 namespace {
 
-constexpr int kFieldJoints = 21;
-constexpr int64_t kFieldWidth = kFieldJoints * 3 + 3;
-constexpr double kFieldFps = 20.0;
-
-using Arrays = std::map<std::string, Tensor>;
-
-Place placeOf(const std::string& origin, const std::string& array) {
-  return {.path = origin, .item = "array '" + array + "'"};
-}
-
-/// World motion of one clip of the field's features, in file units.
-std::vector<Vec3> rebuilt(const float* rows, int64_t frames) {
-  std::vector<Vec3> out;
-  out.reserve(static_cast<size_t>(frames) * kFieldJoints);
-  double yaw = 0.0;
-  Vec3d offset = Vec3d::Zero();
-  for (int64_t t = 0; t < frames; ++t) {
-    const float* row = rows + t * kFieldWidth;
-    const Quatd rotation = axisRotation(1, yaw);
-    for (int j = 0; j < kFieldJoints; ++j)
-      out.emplace_back(
-          (rotation * Vec3d(row[3 * j], row[3 * j + 1], row[3 * j + 2]) + offset).cast<float>());
-    const float* control = row + kFieldJoints * 3;
-    yaw -= control[2];
-    offset += axisRotation(1, yaw) * Vec3d(control[0], 0.0, control[1]);
-  }
-  return out;
-}
-
-double rateIn(const Arrays& arrays, const std::string& origin, double fallback) {
-  const auto fps = arrays.find("fps");
-  if (fps == arrays.end()) return fallback;
-  const std::vector<double> values = fps->second.toDoubles();
-  if (values.size() != 1 || !(values[0] > 0.0) || !std::isfinite(values[0]))
-    throw InputError(placeOf(origin, "fps"), "one positive number",
-                     values.size() == 1 ? fmt::format("{}", values[0]) : fps->second.shapeText());
-  return values[0];
-}
-
-std::vector<Clip> fieldClips(const Arrays& arrays, const std::string& origin,
-                             const ReadOptions& options) {
-  const Tensor& clips = arrays.at("clips");
-  const Place place = placeOf(origin, "clips");
-  if (clips.shape.size() != 3 || clips.shape[2] != kFieldWidth)
-    throw InputError(place, "the shape (clips, frames, 66)", clips.shapeText());
-  if (clips.shape[0] == 0 || clips.shape[1] == 0)
-    throw InputError(place, "at least one clip and frame", clips.shapeText());
-  const std::vector<float> values = clips.toFloats();
-  const int64_t frames = clips.shape[1];
-  std::vector<Clip> out;
-  std::shared_ptr<const Skeleton> skeleton;
-  for (int64_t n = 0; n < clips.shape[0]; ++n) {
-    Clip clip;
-    clip.name = fmt::format("{}_{:04}", std::filesystem::path(origin).stem().string(), n);
-    clip.skeleton = std::make_shared<const Skeleton>(moglowSkeleton());
-    clip.positions = rebuilt(values.data() + n * frames * kFieldWidth, frames);
-    clip.fps = rateIn(arrays, origin, kFieldFps);
-    clip.source.path = origin;
-    validate(clip);
-    clip.skeleton = withOffsetsFrom(clip);
-    clip.source.format = "npz-features";
-    clip.source.fps = clip.fps;
-    if (options.unit.empty())
-      clip.source.notes.push_back("unit cmu (5.6444 cm) is the habit of these files");
-    if (!arrays.contains("fps") && !options.fps)
-      clip.source.notes.push_back("20 frames per second is the habit of these files");
-    clip = normalised(std::move(clip), {.unit = unitByName("cmu"), .up = "y"}, options);
-    // One body, so that the clips can be compared joint by joint.
-    if (!skeleton) skeleton = clip.skeleton;
-    clip.skeleton = skeleton;
-    out.push_back(std::move(clip));
-  }
-  return out;
-}
-
-const Tensor& need(const Arrays& arrays, const std::string& key, const std::string& origin,
+const Tensor& need(const NpzArrays& arrays, const std::string& key, const std::string& origin,
                    const std::vector<int64_t>& shape) {
-  const auto it = arrays.find(key);
-  if (it == arrays.end()) throw InputError(placeOf(origin, key), "an array", "none");
+  const auto it = arrays.numbers.find(key);
+  if (it == arrays.numbers.end())
+    throw InputError(placeOf(origin, key), "an array of numbers",
+                     arrays.contains(key) ? "no numbers" : "none");
   const auto& found = it->second.shape;
   bool fits = found.size() == shape.size();
   for (size_t i = 0; fits && i < shape.size(); ++i) fits = shape[i] < 0 || shape[i] == found[i];
@@ -98,11 +25,22 @@ const Tensor& need(const Arrays& arrays, const std::string& key, const std::stri
   return it->second;
 }
 
-std::vector<std::string> linesOf(const Arrays& arrays, const std::string& key) {
+/// Text as it stands in the array; "" where there is none. Older files hold it as UTF-8 bytes.
+std::string textIn(const NpzArrays& arrays, const std::string& key) {
+  if (const auto text = arrays.texts.find(key); text != arrays.texts.end())
+    return text->second.values.empty() ? "" : text->second.values.front();
+  const auto bytes = arrays.numbers.find(key);
+  if (bytes == arrays.numbers.end() || bytes->second.dtype != DType::U8) return {};
+  const auto& data = bytes->second.bytes;
+  return {reinterpret_cast<const char*>(data.data()), data.size()};
+}
+
+/// Values of a list of text, or the lines of one text.
+std::vector<std::string> listIn(const NpzArrays& arrays, const std::string& key) {
+  const auto found = arrays.texts.find(key);
+  if (found != arrays.texts.end() && !found->second.shape.empty()) return found->second.values;
   std::vector<std::string> out;
-  const auto it = arrays.find(key);
-  if (it == arrays.end()) return out;
-  const std::string text = tensorText(it->second);
+  const std::string text = textIn(arrays, key);
   for (size_t begin = 0; begin <= text.size() && !text.empty();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
     out.push_back(text.substr(begin, end - begin));
@@ -120,14 +58,6 @@ std::vector<int64_t> wholeNumbers(const Tensor& tensor, const Place& place) {
   }
 }
 
-std::vector<Vec3> vectors(const Tensor& tensor) {
-  const std::vector<float> values = tensor.toFloats();
-  std::vector<Vec3> out(values.size() / 3);
-  for (size_t i = 0; i < out.size(); ++i)
-    out[i] = Vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-  return out;
-}
-
 std::vector<Quat> quaternions(const Tensor& tensor, const Place& place) {
   const std::vector<float> values = tensor.toFloats();
   std::vector<Quat> out(values.size() / 4);
@@ -141,11 +71,11 @@ std::vector<Quat> quaternions(const Tensor& tensor, const Place& place) {
   return out;
 }
 
-Skeleton ownSkeleton(const Arrays& arrays, const std::string& origin, int64_t joints) {
+Skeleton ownSkeleton(const NpzArrays& arrays, const std::string& origin, int64_t joints) {
   Skeleton out;
-  out.names = linesOf(arrays, "joint_names");
+  out.names = listIn(arrays, "joint_names");
   if (static_cast<int64_t>(out.names.size()) != joints)
-    throwInput(placeOf(origin, "joint_names"), fmt::format("{} lines", joints), "{}",
+    throwInput(placeOf(origin, "joint_names"), fmt::format("{} names", joints), "{}",
                out.names.size());
   for (const int64_t parent :
        wholeNumbers(need(arrays, "parents", origin, {joints}), placeOf(origin, "parents"))) {
@@ -153,7 +83,11 @@ Skeleton ownSkeleton(const Arrays& arrays, const std::string& origin, int64_t jo
       throwInput(placeOf(origin, "parents"), "joint numbers or -1", "{}", parent);
     out.parents.push_back(static_cast<int>(parent));
   }
-  out.offsets = vectors(need(arrays, "offsets", origin, {joints, 3}));
+  // Left out, they are measured: see ownClip.
+  if (arrays.contains("offsets"))
+    out.offsets = vectors(need(arrays, "offsets", origin, {joints, 3}));
+  else
+    out.offsets.assign(static_cast<size_t>(joints), Vec3::Zero());
   if (!arrays.contains("end_site_parents")) return out;
   const std::vector<int64_t> sites = wholeNumbers(need(arrays, "end_site_parents", origin, {-1}),
                                                   placeOf(origin, "end_site_parents"));
@@ -167,36 +101,62 @@ Skeleton ownSkeleton(const Arrays& arrays, const std::string& origin, int64_t jo
   return out;
 }
 
-void readSource(const Arrays& arrays, const std::string& origin, Clip& clip) {
+void readSource(const NpzArrays& arrays, const std::string& origin, Clip& clip) {
   clip.source.format = "npz";
-  clip.source.eulerOrders = linesOf(arrays, "euler_orders");
-  const auto it = arrays.find("source");
-  if (it == arrays.end()) return;
-  const Json source = parseJson(tensorText(it->second), origin + ", array 'source'");
+  clip.source.eulerOrders = listIn(arrays, "euler_orders");
+  const std::string text = textIn(arrays, "source");
+  if (text.empty()) return;
+  const Json source = parseJson(text, origin + ", array 'source'");
   if (!source.is_object() || !source.contains("notes") || !source["notes"].is_array()) return;
   for (const Json& note : source["notes"])
     if (note.is_string()) clip.source.notes.push_back(note.get<std::string>());
 }
 
-Clip ownClip(const Arrays& arrays, const std::string& origin, const ReadOptions& options) {
+Clip ownClip(const NpzArrays& arrays, const std::string& origin, const ReadOptions& options) {
   const Tensor& positions = need(arrays, "positions", origin, {-1, -1, 3});
   const int64_t frames = positions.shape[0], joints = positions.shape[1];
   Clip clip;
   readSource(arrays, origin, clip);
-  const std::vector<std::string> name = linesOf(arrays, "name");
-  clip.name = name.empty() ? std::filesystem::path(origin).stem().string() : name.front();
+  clip.name = textIn(arrays, "name");
+  if (clip.name.empty()) clip.name = std::filesystem::path(origin).stem().string();
   clip.source.path = origin;
   clip.skeleton = std::make_shared<const Skeleton>(ownSkeleton(arrays, origin, joints));
   validate(*clip.skeleton, origin);
   clip.positions = vectors(positions);
-  need(arrays, "fps", origin, {1});
-  clip.fps = rateIn(arrays, origin, 0.0);
+  const std::optional<double> fps = rateIn(arrays, origin);
+  if (!fps) throw InputError(placeOf(origin, "fps"), "one positive number", "none");
+  clip.fps = *fps;
   clip.source.fps = clip.fps;
   if (arrays.contains("rotations"))
     clip.transforms = {quaternions(need(arrays, "rotations", origin, {frames, joints, 4}),
                                    placeOf(origin, "rotations")),
                        vectors(need(arrays, "translations", origin, {frames, joints, 3}))};
+  if (!arrays.contains("offsets")) {
+    validate(clip);
+    clip.skeleton = withOffsetsFrom(clip);
+    clip.source.notes.push_back("offsets are not given: measured from the positions");
+  }
   return normalised(std::move(clip), {.unit = unitByName("m"), .up = "y"}, options);
+}
+
+/// The only array that may hold the joints of a clip.
+std::vector<Clip> onlyJoints(const NpzArrays& arrays, const std::string& origin,
+                             const ReadOptions& options) {
+  std::vector<std::string> candidates;
+  for (const auto& [name, tensor] : arrays.numbers)
+    if (hasShapeOfJoints(tensor)) candidates.push_back(name);
+  const bool body = arrays.contains("poses") && arrays.contains("trans");
+  if (candidates.size() == 1 && !body) {
+    std::vector<Clip> out =
+        jointClips(arrays.numbers.at(candidates[0]), origin, rateIn(arrays, origin), options);
+    for (Clip& clip : out)
+      clip.source.notes.push_back("positions are those of array '" + candidates[0] + "'");
+    return out;
+  }
+  throw InputError({.path = origin}, kReadKeys,
+                   body ? "body parameters of SMPL (poses, trans; AMASS): compute the joints with "
+                          "its body model and save their positions"
+                        : "arrays " + arrays.listing());
 }
 
 }  // namespace
@@ -205,19 +165,24 @@ int canReadNpz(std::string_view head) {
   return head.starts_with("PK\x03\x04") ? 60 : 0;
 }
 
-std::vector<Clip> clipsFromArrays(const Arrays& arrays, const std::string& origin,
+std::vector<Clip> clipsFromArrays(const NpzArrays& arrays, const std::string& origin,
                                   const ReadOptions& options) {
-  if (arrays.contains("positions")) return {ownClip(arrays, origin, options)};
-  if (arrays.contains("clips")) return fieldClips(arrays, origin, options);
-  std::string names;
-  for (const auto& [name, tensor] : arrays) names += (names.empty() ? "" : ", ") + name;
-  throw InputError({.path = origin}, "an array 'clips' or 'positions'",
-                   names.empty() ? "no array" : names.substr(0, 200));
+  // Without any word on the skeleton, positions are as good as an array of another name.
+  const bool own = arrays.contains("positions") &&
+                   (arrays.contains("joint_names") || arrays.contains("parents") ||
+                    arrays.contains("rotations") || !arrays.numbers.contains("positions") ||
+                    !hasShapeOfJoints(arrays.numbers.at("positions")));
+  if (own) return {ownClip(arrays, origin, options)};
+  if (arrays.numbers.contains("clips")) return featureClips(arrays, origin, options);
+  if (arrays.contains("clips"))
+    throw InputError(placeOf(origin, "clips"), "numbers of the shape (clips, frames, 66)",
+                     arrays.listing());
+  return onlyJoints(arrays, origin, options);
 }
 
 std::vector<Clip> readNpzClips(std::string_view bytes, const std::filesystem::path& path,
                                const ReadOptions& options) {
-  return clipsFromArrays(parseNpz(bytes, path.string()), path.string(), options);
+  return clipsFromArrays(parseNpzArrays(bytes, path.string()), path.string(), options);
 }
 
 }  // namespace marey::io

@@ -19,16 +19,11 @@ Tensor quaternionTensor(std::vector<int64_t> shape, const std::vector<Quat>& val
   return Tensor::fromFloats(std::move(shape), flat.data());
 }
 
-Tensor lines(const std::vector<std::string>& values) {
-  std::string text;
-  for (size_t i = 0; i < values.size(); ++i) text += (i == 0 ? "" : "\n") + values[i];
-  return textTensor(text);
-}
-
-void addSkeleton(const Skeleton& skeleton, std::map<std::string, Tensor>& out) {
+void addSkeleton(const Skeleton& skeleton, NpzArrays& arrays) {
   const auto joints = static_cast<int64_t>(skeleton.names.size());
   const std::vector<int64_t> parents(skeleton.parents.begin(), skeleton.parents.end());
-  out["joint_names"] = lines(skeleton.names);
+  auto& out = arrays.numbers;
+  arrays.texts["joint_names"] = TextArray::list(skeleton.names);
   out["parents"] = Tensor::fromInt64({joints}, parents.data());
   out["offsets"] = vectorTensor({joints, 3}, skeleton.offsets);
   if (skeleton.endSites.empty()) return;
@@ -51,21 +46,22 @@ void requireOwnUnits(const WriteOptions& options) {
 
 }  // namespace
 
-std::map<std::string, Tensor> arraysOfClip(const Clip& clip, const Json& recipe) {
+NpzArrays arraysOfClip(const Clip& clip, const Json& recipe) {
   const int64_t frames = clip.frameCount(), joints = clip.jointCount();
-  std::map<std::string, Tensor> out;
+  NpzArrays out;
   addSkeleton(*clip.skeleton, out);
-  out["format"] = textTensor("marey-clip 1");
-  out["name"] = textTensor(clip.name);
-  out["fps"] = Tensor::fromDoubles({1}, &clip.fps);
-  out["positions"] = vectorTensor({frames, joints, 3}, clip.positions);
+  out.texts["format"] = TextArray::one("marey-clip 2");
+  out.texts["name"] = TextArray::one(clip.name);
+  out.numbers["fps"] = Tensor::fromDoubles({1}, &clip.fps);
+  out.numbers["positions"] = vectorTensor({frames, joints, 3}, clip.positions);
   if (clip.transforms) {
-    out["rotations"] = quaternionTensor({frames, joints, 4}, clip.transforms->rotations);
-    out["translations"] = vectorTensor({frames, joints, 3}, clip.transforms->translations);
+    out.numbers["rotations"] = quaternionTensor({frames, joints, 4}, clip.transforms->rotations);
+    out.numbers["translations"] = vectorTensor({frames, joints, 3}, clip.transforms->translations);
   }
-  if (!clip.source.eulerOrders.empty()) out["euler_orders"] = lines(clip.source.eulerOrders);
-  out["source"] = textTensor(jsonText(sourceJson(clip)));
-  out["recipe"] = textTensor(jsonText(recipe));
+  if (!clip.source.eulerOrders.empty())
+    out.texts["euler_orders"] = TextArray::list(clip.source.eulerOrders);
+  out.texts["source"] = TextArray::one(jsonText(sourceJson(clip)));
+  out.texts["recipe"] = TextArray::one(jsonText(recipe));
   return out;
 }
 

@@ -1,5 +1,6 @@
 // Writes small valid inputs of every fuzz target, from the project's own walker.
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <string>
 
@@ -24,18 +25,37 @@ Clip shortWalk() {
 }
 
 /// The layout that npz_fuzz.cpp describes.
-std::string packed(const std::map<std::string, Tensor>& arrays) {
+std::string packed(const NpzArrays& arrays) {
   std::string out(1, '\1');
-  for (const auto& [name, tensor] : arrays) {
+  const auto add = [&out](const std::string& name, const std::string& npy) {
     const auto at = std::find(kFuzzNames.begin(), kFuzzNames.end(), name);
-    const std::string npy = serialiseNpy(tensor);
-    if (at == kFuzzNames.end() || npy.size() > 0xFFFF) continue;
+    if (at == kFuzzNames.end() || npy.size() > 0xFFFF) return;
     out += static_cast<char>(at - kFuzzNames.begin());
     out += static_cast<char>(npy.size() & 0xFFU);
     out += static_cast<char>(npy.size() >> 8U);
     out += npy;
-  }
+  };
+  for (const auto& [name, tensor] : arrays.numbers) add(name, serialiseNpy(tensor));
+  for (const auto& [name, text] : arrays.texts) add(name, serialiseNpy(text));
   return out;
+}
+
+NpzArrays only(const std::string& name, const Tensor& tensor) {
+  return {.numbers = {{name, tensor}}, .texts = {}, .others = {}};
+}
+
+/// Two frames of a standing person in SMPL's order.
+Tensor smplJoints() {
+  const std::array<float, 66> pose = {
+      0,      0.9f,  0,      0.09f, 0.86f,  0,     -0.09f, 0.86f,  0,      0,      1.02f,
+      0,      0.09f, 0.46f,  0.01f, -0.09f, 0.46f, 0.01f,  0,      1.1f,   0,      0.09f,
+      0.08f,  0,     -0.09f, 0.08f, 0,      0,     1.17f,  0,      0.09f,  0.01f,  0.12f,
+      -0.09f, 0.01f, 0.12f,  0,     1.42f,  0,     0.05f,  1.39f,  0,      -0.05f, 1.39f,
+      0,      0,     1.52f,  0,     0.17f,  1.39f, 0,      -0.17f, 1.39f,  0,      0.2f,
+      1.12f,  0,     -0.2f,  1.12f, 0,      0.22f, 0.89f,  0.07f,  -0.22f, 0.89f,  0.07f};
+  std::vector<float> values(pose.begin(), pose.end());
+  values.insert(values.end(), pose.begin(), pose.end());
+  return Tensor::fromFloats({2, 22, 3}, values.data());
 }
 
 void writeNpzSeeds(const Clip& clip, const fs::path& folder) {
@@ -43,10 +63,26 @@ void writeNpzSeeds(const Clip& clip, const fs::path& folder) {
   const std::string archive = readFile(folder / "whole.npz");
   fs::remove(folder / "whole.npz");
   writeFileAtomically(folder / "archive", std::string(1, '\0') + archive);
-  writeFileAtomically(folder / "clip", packed(io::arraysOfClip(clip, Json::object())));
+  const NpzArrays whole = io::arraysOfClip(clip, Json::object());
+  writeFileAtomically(folder / "clip", packed(whole));
+  NpzArrays bare = whole;
+  bare.numbers.erase("offsets");
+  bare.texts.erase("source");
+  writeFileAtomically(folder / "without_offsets", packed(bare));
   const std::vector<float> zeros(2 * 3 * 66, 0.0f);
   writeFileAtomically(folder / "features",
-                      packed({{"clips", Tensor::fromFloats({2, 3, 66}, zeros.data())}}));
+                      packed(only("clips", Tensor::fromFloats({2, 3, 66}, zeros.data()))));
+  NpzArrays joints = only("joints", smplJoints());
+  joints.texts["name"] = TextArray::one("walk");
+  writeFileAtomically(folder / "joints", packed(joints));
+  const std::string npy = serialiseNpy(smplJoints());
+  writeFileAtomically(folder / "npy", std::string(1, '\2') + npy);
+  std::string bigEndian = npy;
+  bigEndian.replace(bigEndian.find("<f4"), 3, ">f4");
+  writeFileAtomically(folder / "npy_big_endian", std::string(1, '\2') + bigEndian);
+  std::string structure = npy;
+  structure.replace(structure.find("'<f4'"), 5, "[('x'");
+  writeFileAtomically(folder / "npy_structure", std::string(1, '\2') + structure);
 }
 
 void writeBvhSeeds(const Clip& clip, const fs::path& folder) {

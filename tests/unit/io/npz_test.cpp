@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstring>
 
 #include "unit/io/support.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 using test::expectContains;
 using test::inputErrorOf;
-using Arrays = std::map<std::string, Tensor>;
+using Arrays = NpzArrays;
 
 /// One clip whose joint 0 is at (0, 1, 0) and joint 1 at (1, 1, 0) of the body's frame.
 Arrays fieldArrays(const std::vector<std::array<float, 3>>& controls) {
@@ -27,8 +28,10 @@ Arrays fieldArrays(const std::vector<std::array<float, 3>>& controls) {
     values.insert(values.end(), row.begin(), row.end());
     values.insert(values.end(), control.begin(), control.end());
   }
-  return {
-      {"clips", Tensor::fromFloats({1, static_cast<int64_t>(controls.size()), 66}, values.data())}};
+  Arrays out;
+  out.numbers["clips"] =
+      Tensor::fromFloats({1, static_cast<int64_t>(controls.size()), 66}, values.data());
+  return out;
 }
 
 TEST(FieldNpz, WorldMotionFollowsTheControlsByTheFieldsConvention) {
@@ -75,22 +78,26 @@ TEST(FieldNpz, TheFirstLimbIsTheLeftLegOnPlusX) {
 TEST(FieldNpz, OtherShapesAreRefusedByName) {
   const std::vector<float> zeros(73 * 4, 0.0f);
   const auto parse = [](const Tensor& t) {
-    return inputErrorOf([&] { clipsFromArrays({{"clips", t}}, "a.npz"); });
+    return inputErrorOf([&] {
+      clipsFromArrays({.numbers = {{"clips", t}}, .texts = {}, .others = {}}, "a.npz");
+    });
   };
   expectContains(parse(Tensor::fromFloats({1, 4, 73}, zeros.data())), "(1, 4, 73)");
   expectContains(parse(Tensor::fromFloats({4, 66}, zeros.data())), "(clips, frames, 66)");
   expectContains(parse(Tensor::fromFloats({0, 4, 66}, zeros.data())), "at least one clip");
   expectContains(inputErrorOf([] {
-                   clipsFromArrays({{"weights", textTensor("x")}}, "a.npz");
+                   clipsFromArrays(
+                       {.numbers = {}, .texts = {{"weights", TextArray::one("x")}}, .others = {}},
+                       "a.npz");
                  }),
                  "weights");
 }
 
 TEST(FieldNpz, NanIsNamedByFrameAndJoint) {
   Arrays arrays = fieldArrays({{0, 0, 0}, {0, 0, 0}});
-  std::vector<float> values = arrays["clips"].toFloats();
+  std::vector<float> values = arrays.numbers["clips"].toFloats();
   values[66 + 4] = NAN;
-  arrays["clips"] = Tensor::fromFloats({1, 2, 66}, values.data());
+  arrays.numbers["clips"] = Tensor::fromFloats({1, 2, 66}, values.data());
   expectContains(inputErrorOf([&] { clipsFromArrays(arrays, "a.npz"); }),
                  "frame 2, joint 'LeftUpLeg'");
 }
@@ -120,7 +127,8 @@ TEST(MareyNpz, AClipComesBackBitForBit) {
     EXPECT_LT(clip.transforms->rotations[i].angularDistance(back.transforms->rotations[i]), 1e-6f);
   EXPECT_EQ(back.source.eulerOrders, clip.source.eulerOrders);
   EXPECT_TRUE(test::hasNote(back, "from a test"));
-  const Json recipe = parseJson(tensorText(readNpz(folder / "a.npz").at("recipe")), "recipe");
+  const Json recipe =
+      parseJson(readNpzArrays(folder / "a.npz").texts.at("recipe").values.at(0), "recipe");
   EXPECT_EQ(recipe["seed"], 3);
 }
 
@@ -142,7 +150,6 @@ TEST(MareyNpz, DamagedArraysAreRefusedByName) {
   const double minus = -1.0;
   const std::vector<float> zeros(3 * 10 * 4, 0.0f);
   const std::pair<const char*, Tensor> damages[] = {
-      {"joint_names", textTensor("a\nb")},
       {"parents", Tensor::fromInt64({10}, parents)},
       {"fps", Tensor::fromDoubles({1}, &minus)},
       {"offsets", Tensor::fromFloats({3, 3}, zeros.data())},
@@ -151,17 +158,47 @@ TEST(MareyNpz, DamagedArraysAreRefusedByName) {
       {"end_site_parents", Tensor::fromInt64({1}, parents)}};
   for (const auto& [name, tensor] : damages) {
     Arrays bad = good;
-    bad[name] = tensor;
+    bad.numbers[name] = tensor;
     expectContains(inputErrorOf([&] { clipsFromArrays(bad, "a.npz"); }),
                    "end_site_parents" == std::string(name) ? "end_site_" : name);
   }
   Arrays bad = good;
+  bad.texts["joint_names"] = TextArray::list({"a", "b"});
+  expectContains(inputErrorOf([&] { clipsFromArrays(bad, "a.npz"); }), "joint_names");
+  bad = good;
   const std::vector<float> nans(10, NAN);
-  bad["parents"] = Tensor::fromFloats({10}, nans.data());
+  bad.numbers["parents"] = Tensor::fromFloats({10}, nans.data());
   expectContains(inputErrorOf([&] { clipsFromArrays(bad, "a.npz"); }), "parents");
   bad = good;
-  bad.erase("fps");
+  bad.numbers.erase("fps");
   expectContains(inputErrorOf([&] { clipsFromArrays(bad, "a.npz"); }), "fps");
+}
+
+TEST(MareyNpz, FilesWithTextAsBytesAreStillRead) {
+  const Clip clip = positioned(test::smallPerson(3));
+  Arrays old = arraysOfClip(clip, Json::object());
+  for (const auto& [name, text] : old.texts) {
+    std::string lines;
+    for (const std::string& value : text.values) lines += (lines.empty() ? "" : "\n") + value;
+    Tensor bytes{.dtype = DType::U8, .shape = {static_cast<int64_t>(lines.size())}, .bytes = {}};
+    bytes.bytes.resize(lines.size());
+    std::memcpy(bytes.bytes.data(), lines.data(), lines.size());
+    old.numbers[name] = bytes;
+  }
+  old.texts.clear();
+  const Clip back = clipsFromArrays(old, "a.npz").at(0);
+  EXPECT_EQ(back.name, clip.name);
+  EXPECT_EQ(back.skeleton->names, clip.skeleton->names);
+}
+
+TEST(MareyNpz, OffsetsThatAreLeftOutAreMeasured) {
+  const Clip clip = positioned(test::smallPerson(3));
+  Arrays arrays = arraysOfClip(clip, Json::object());
+  arrays.numbers.erase("offsets");
+  const Clip back = clipsFromArrays(arrays, "a.npz").at(0);
+  for (size_t j = 1; j < clip.skeleton->offsets.size(); ++j)
+    EXPECT_NEAR(back.skeleton->offsets[j].norm(), clip.skeleton->offsets[j].norm(), 1e-5f);
+  EXPECT_TRUE(test::hasNote(back, "measured"));
 }
 
 TEST(MareyNpz, OtherUnitsAreRefusedOnWriting) {

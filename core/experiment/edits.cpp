@@ -123,6 +123,10 @@ void moveToFolder(Experiment& experiment, const fs::path& folder) {
   experiment.folder = folder;
 }
 
+bool isEmpty(const Experiment& e) {
+  return e.natural.empty() && e.systems.empty() && e.paths.empty();
+}
+
 Experiment asStored(const Experiment& experiment) {
   Experiment out = experimentFromJson(toJson(experiment), experiment.title);
   out.folder = experiment.folder;

@@ -30,6 +30,8 @@ void setPathSeconds(Experiment& experiment, size_t index, double seconds);
 /// Makes relative file names of the document start at `folder` instead of at its present folder,
 /// so that a document saved elsewhere still finds its files.
 void moveToFolder(Experiment& experiment, const std::filesystem::path& folder);
+/// Whether it names no motion, no system and no path.
+bool isEmpty(const Experiment& experiment);
 /// The document as it would be after saving and opening it again. Throws InputError naming the key
 /// where such a file could not be opened.
 Experiment asStored(const Experiment& experiment);

@@ -9,6 +9,8 @@
 #include <QSpinBox>
 #include <limits>
 
+#include "shell/number_box.h"
+
 namespace marey::gui {
 namespace {
 
@@ -50,19 +52,19 @@ class DocumentSettings : public QDialog {
 
   void buildNumbers(QFormLayout& form) {
     const Experiment& e = m_workspace.experiment();
-    m_fps = new QDoubleSpinBox(this);
+    m_fps = new NumberBox(this);
     m_fps->setObjectName(QStringLiteral("settingsFps"));
     m_fps->setRange(1.0, 1000.0);
     m_fps->setDecimals(3);
     m_fps->setSuffix(tr(" frames/s"));
     m_fps->setValue(e.fps);
     m_fps->setToolTip(tr("Natural motion is brought to it, and models must have it"));
-    m_heldOut = new QSpinBox(this);
+    m_heldOut = new CountBox(this);
     m_heldOut->setObjectName(QStringLiteral("settingsHeldOut"));
     m_heldOut->setRange(0, std::numeric_limits<int>::max());
     m_heldOut->setValue(e.heldOutSamples);
     m_heldOut->setToolTip(tr("Samples of the report along the way of each natural clip; 0: none"));
-    m_step = new QDoubleSpinBox(this);
+    m_step = new NumberBox(this);
     m_step->setObjectName(QStringLiteral("settingsToleranceStep"));
     m_step->setRange(0.01, 100.0);
     m_step->setSingleStep(0.1);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "panels/scene_legend.h"
+#include "shell/number_box.h"
 
 namespace marey::gui {
 namespace {
@@ -37,14 +38,14 @@ ExportPictureForm::ExportPictureForm(SceneView* scene, QWidget* parent)
       m_look(new QComboBox(this)),
       m_width(pixels("exportWidth", 1280)),
       m_height(pixels("exportHeight", 720)),
-      m_fps(new QDoubleSpinBox(this)),
+      m_fps(new NumberBox(this)),
       m_view(new QComboBox(this)),
       m_orthographic(new QCheckBox(tr("Orthographic"), this)),
       m_camera(new QComboBox(this)),
       m_dark(new QCheckBox(tr("Dark background"), this)),
       m_legend(new QCheckBox(tr("Legend"), this)),
       m_trail(new QCheckBox(tr("Earlier figures stay, lighter"), this)),
-      m_strobe(new QDoubleSpinBox(this)),
+      m_strobe(new NumberBox(this)),
       m_path(new QCheckBox(tr("Path that was asked for"), this)) {
   const std::pair<QWidget*, const char*> names[] = {
       {m_look, "exportLook"},     {m_fps, "exportFps"},
@@ -94,7 +95,7 @@ ExportPictureForm::ExportPictureForm(SceneView* scene, QWidget* parent)
 }
 
 QSpinBox* ExportPictureForm::pixels(const char* name, int value) {
-  auto* box = new QSpinBox(this);
+  auto* box = new CountBox(this);
   box->setObjectName(QLatin1String(name));
   box->setRange(kLeastPixels, kMostPixels);
   box->setSingleStep(2);

@@ -2,6 +2,8 @@
 
 #include <QFormLayout>
 
+#include "shell/number_box.h"
+
 #include "io/units.h"
 
 namespace marey::gui {
@@ -11,7 +13,7 @@ ImportOverrides::ImportOverrides(QWidget* parent)
       m_unit(new QComboBox(this)),
       m_up(new QComboBox(this)),
       m_euler(new QComboBox(this)),
-      m_fps(new QDoubleSpinBox(this)),
+      m_fps(new NumberBox(this)),
       m_swap(new QCheckBox(tr("Left and right are swapped"), this)),
       m_all(new QPushButton(tr("Use for all files"), this)) {
   const auto choice = [this](QComboBox* box, const char* name) {

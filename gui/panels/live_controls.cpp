@@ -7,6 +7,8 @@
 #include <QVBoxLayout>
 #include <numbers>
 
+#include "shell/number_box.h"
+
 namespace marey::gui {
 namespace {
 constexpr double kRadians = std::numbers::pi / 180.0;
@@ -45,7 +47,7 @@ LiveControls::LiveControls(QWidget* parent) : QWidget(parent) {
 
 QDoubleSpinBox* LiveControls::number(const char* name, double value, double low, double high,
                                      const QString& unit) {
-  auto* box = new QDoubleSpinBox(this);
+  auto* box = new NumberBox(this);
   box->setObjectName(QLatin1String(name));
   box->setRange(low, high);
   box->setSingleStep((high - low) / 40.0);

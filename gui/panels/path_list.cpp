@@ -9,6 +9,7 @@
 
 #include "panels/paint_style.h"
 #include "shell/file_dialogs.h"
+#include "shell/number_box.h"
 
 #include "base/error.h"
 #include "experiment/edits.h"
@@ -51,12 +52,11 @@ void PathList::build() {
   });
   m_add = addMenuButton(QStringLiteral("pathAdd"), tr("Add"), tr("Add a path to the document"));
   m_more = addMenuButton(QStringLiteral("pathMore"), tr("More"), tr("Rename, copy, files"));
-  m_seconds = new QDoubleSpinBox(this);
+  m_seconds = new NumberBox(this);
   m_seconds->setObjectName(QStringLiteral("pathSeconds"));
   m_seconds->setRange(0.0, 86400.0);
   m_seconds->setDecimals(1);
   m_seconds->setSuffix(tr(" s"));
-  m_seconds->setKeyboardTracking(false);
   // Room for the words that stand for 0.
   m_seconds->setMinimumWidth(m_seconds->fontMetrics().horizontalAdvance(tr("whole path")) + 44);
   m_seconds->setToolTip(tr("How long motions follow the path; 0: as long as the path takes"));
@@ -136,7 +136,7 @@ void PathList::refresh() {
   // A preset has no end of its own.
   const bool preset = path && !m_path.drawn() && path->path.starts_with("preset:");
   m_seconds->setSpecialValueText(preset ? tr("usual") : tr("whole path"));
-  m_seconds->setValue(path ? path->seconds : 0.0);
+  m_seconds->display(path ? path->seconds : 0.0);
   m_makeDrawn->setVisible(path && !m_path.drawn());
   m_makeDrawn->setEnabled(m_path.points().size() > 1);
   m_filling = false;

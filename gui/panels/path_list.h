@@ -9,6 +9,7 @@
 #include <QWidget>
 
 #include "panels/current_path.h"
+#include "shell/number_box.h"
 
 namespace marey::gui {
 
@@ -40,7 +41,7 @@ class PathList : public QWidget {
   QComboBox* m_choice = nullptr;
   QToolButton *m_add = nullptr, *m_more = nullptr;
   QPushButton* m_makeDrawn = nullptr;
-  QDoubleSpinBox* m_seconds = nullptr;
+  NumberBox* m_seconds = nullptr;
   QAction *m_rename = nullptr, *m_copy = nullptr, *m_remove = nullptr, *m_take = nullptr,
           *m_export = nullptr;
   bool m_filling = false;

@@ -1,7 +1,6 @@
 #include "panels/sampling_panel.h"
 
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QHeaderView>
@@ -10,12 +9,14 @@
 #include <QPushButton>
 #include <QRandomGenerator>
 #include <QRegularExpressionValidator>
-#include <QSpinBox>
 #include <QTableWidget>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <limits>
+
+#include "shell/number_box.h"
+#include "shell/workspace.h"
 
 #include "experiment/edits.h"
 
@@ -70,13 +71,13 @@ class SamplingPanel : public QWidget {
     auto* form = new QFormLayout;
     m_path = new QComboBox(this);
     m_path->setObjectName(QStringLiteral("samplePath"));
-    m_seconds = new QDoubleSpinBox(this);
+    m_seconds = new NumberBox(this);
     m_seconds->setObjectName(QStringLiteral("sampleSeconds"));
     m_seconds->setRange(0.0, 86400.0);
     m_seconds->setDecimals(1);
     m_seconds->setSuffix(tr(" s"));
     m_seconds->setSpecialValueText(tr("as long as the path takes"));
-    m_count = new QSpinBox(this);
+    m_count = new CountBox(this);
     m_count->setObjectName(QStringLiteral("sampleCount"));
     m_count->setRange(1, std::numeric_limits<int>::max());
     m_start = new QComboBox(this);
@@ -153,6 +154,7 @@ class SamplingPanel : public QWidget {
   void takeSeed(const QString& text) {
     bool fits = false;
     const uint64_t seed = text.toULongLong(&fits);
+    m_seed->setModified(false);
     if (fits) change(tr("Seed"), [seed](Experiment& e) { e.seed = seed; });
     refresh();
   }
@@ -164,14 +166,15 @@ class SamplingPanel : public QWidget {
   void refresh() {
     m_refreshing = true;
     const Experiment& e = m_workspace.experiment();
-    m_count->setValue(e.samples);
-    m_seed->setText(QString::number(e.seed));
+    m_count->display(e.samples);
+    // What is being typed is not finished yet.
+    if (!m_seed->hasFocus() || !m_seed->isModified()) m_seed->setText(QString::number(e.seed));
     m_path->clear();
     for (const ExperimentPath& path : e.paths) m_path->addItem(QString::fromStdString(path.name));
     m_path->setCurrentIndex(m_workspace.currentPath());
     const auto index = static_cast<size_t>(m_workspace.currentPath());
     m_seconds->setEnabled(index < e.paths.size());
-    if (index < e.paths.size()) m_seconds->setValue(e.paths[index].seconds);
+    if (index < e.paths.size()) m_seconds->display(e.paths[index].seconds);
     m_start->setEnabled(index < e.paths.size() && e.paths[index].followsClip());
     m_start->setCurrentIndex(index < e.paths.size() && e.paths[index].startFromClip ? 1 : 0);
     refreshSystems();
@@ -196,14 +199,14 @@ class SamplingPanel : public QWidget {
       file->setToolTip(QString::fromStdString(m_workspace.modelFile(system)));
       file->setFlags(file->flags() & ~Qt::ItemIsEditable);
       m_systems->setItem(row, 2, file);
-      auto* box = qobject_cast<QDoubleSpinBox*>(m_systems->cellWidget(row, 1));
+      auto* box = static_cast<NumberBox*>(m_systems->cellWidget(row, 1));
       if (box == nullptr) box = temperatureBox(row);
-      box->setValue(system.temperature);
+      box->display(system.temperature);
     }
   }
 
-  QDoubleSpinBox* temperatureBox(int row) {
-    auto* box = new QDoubleSpinBox;
+  NumberBox* temperatureBox(int row) {
+    auto* box = new NumberBox;
     box->setObjectName(QStringLiteral("temperature%1").arg(row));
     box->setRange(0.0, 4.0);
     box->setSingleStep(0.05);
@@ -234,8 +237,8 @@ class SamplingPanel : public QWidget {
   Workspace& m_workspace;
   QTableWidget* m_systems = nullptr;
   QComboBox* m_path = nullptr;
-  QDoubleSpinBox* m_seconds = nullptr;
-  QSpinBox* m_count = nullptr;
+  NumberBox* m_seconds = nullptr;
+  CountBox* m_count = nullptr;
   QLineEdit* m_seed = nullptr;
   QComboBox* m_start = nullptr;
   QPushButton* m_run = nullptr;

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "panels/paint_style.h"
+#include "shell/number_box.h"
 
 namespace marey::gui {
 namespace {
@@ -225,7 +226,7 @@ QWidget* SceneBar::showForm(QWidget* parent) {
 
 QDoubleSpinBox* SceneBar::addSeconds(QWidget* form, const char* name, double low, double high,
                                      double value) {
-  auto* box = new QDoubleSpinBox(form);
+  auto* box = new NumberBox(form);
   box->setObjectName(QLatin1String(name));
   box->setRange(low, high);
   box->setSingleStep(0.25);

@@ -1,13 +1,9 @@
 #include "panels/timeline_panel.h"
 
 #include <QAction>
-#include <QApplication>
-#include <QDoubleSpinBox>
 #include <QHBoxLayout>
-#include <QKeyEvent>
 #include <QLabel>
 #include <QScrollArea>
-#include <QSpinBox>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <cmath>
@@ -17,6 +13,7 @@
 #include "panels/time_ruler.h"
 #include "panels/transport_icons.h"
 #include "panels/workspace_chart.h"
+#include "shell/number_box.h"
 
 namespace marey::gui {
 namespace {
@@ -45,28 +42,12 @@ class TimelinePanel : public QWidget {
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     scroll->setWidget(m_gait);
     layout->addWidget(scroll, 1);
-    qApp->installEventFilter(this);
     connectWorkspace();
     updateRows();
     updateTime();
   }
 
  protected:
-  /// Space plays everywhere, but a button or list that has the focus keeps it for itself.
-  bool eventFilter(QObject* object, QEvent* event) override {
-    if (event->type() != QEvent::ShortcutOverride) return false;
-    const auto* key = static_cast<QKeyEvent*>(event);
-    const QWidget* focus = QApplication::focusWidget();
-    const bool wants =
-        focus && (focus->inherits("QAbstractButton") || focus->inherits("QAbstractItemView") ||
-                  focus->inherits("QComboBox") || focus->inherits("QMenu"));
-    if (object == focus && wants && key->key() == Qt::Key_Space && !key->modifiers()) {
-      event->accept();
-      return true;
-    }
-    return false;
-  }
-
   void changeEvent(QEvent* event) override {
     QWidget::changeEvent(event);
     if (event->type() == QEvent::PaletteChange && m_end) drawIcons();
@@ -90,7 +71,7 @@ class TimelinePanel : public QWidget {
     out->setObjectName(QLatin1String(name));
     out->setDefaultAction(action);
     out->setAutoRaise(true);
-    // Space must stay "play" after a click here.
+    // A click here leaves the keys where they were.
     out->setFocusPolicy(Qt::TabFocus);
     bar->addWidget(out);
     return out;
@@ -142,9 +123,8 @@ class TimelinePanel : public QWidget {
 
   void addFrameBox(QHBoxLayout* bar) {
     bar->addWidget(new QLabel(tr("Frame"), this));
-    m_frame = new QSpinBox(this);
+    m_frame = new CountBox(this);
     m_frame->setObjectName(QStringLiteral("timelineFrame"));
-    m_frame->setKeyboardTracking(false);
     m_frame->setToolTip(tr("Go to a frame at the document's rate; frame 0 is at 0 s (G)"));
     connect(m_frame, qOverload<int>(&QSpinBox::valueChanged), this, [this](int frame) {
       if (!m_updating) m_playback->goTo(frame / m_workspace.experiment().fps);
@@ -164,7 +144,7 @@ class TimelinePanel : public QWidget {
 
   void addSpeed(QHBoxLayout* bar) {
     auto* label = new QLabel(tr("Speed"), this);
-    auto* speed = new QDoubleSpinBox(this);
+    auto* speed = new NumberBox(this);
     speed->setObjectName(QStringLiteral("timelineSpeed"));
     speed->setRange(0.1, 4.0);
     speed->setSingleStep(0.1);
@@ -192,7 +172,7 @@ class TimelinePanel : public QWidget {
 
   void addTolerance(QHBoxLayout* bar) {
     auto* label = new QLabel(tr("Contact below"), this);
-    m_tolerance = new QDoubleSpinBox(this);
+    m_tolerance = new NumberBox(this);
     m_tolerance->setObjectName(QStringLiteral("timelineTolerance"));
     m_tolerance->setRange(0.3, 200.0);
     m_tolerance->setDecimals(1);
@@ -206,7 +186,7 @@ class TimelinePanel : public QWidget {
     connect(m_tolerance, qOverload<double>(&QDoubleSpinBox::valueChanged), &m_contacts,
             &ContactTolerance::set);
     connect(&m_contacts, &ContactTolerance::changed, this, [this] {
-      m_tolerance->setValue(m_contacts.cmS());
+      m_tolerance->display(m_contacts.cmS());
       updateRows();
     });
     bar->addWidget(label);
@@ -261,7 +241,7 @@ class TimelinePanel : public QWidget {
     const int last = static_cast<int>(std::floor(seconds * fps + 1e-6));
     m_updating = true;
     m_frame->setRange(0, last);
-    m_frame->setValue(static_cast<int>(std::lround(m_workspace.time() * fps)));
+    m_frame->display(static_cast<int>(std::lround(m_workspace.time() * fps)));
     m_updating = false;
     m_frameCount->setText(tr("of %1").arg(last));
     QString text = tr("%1 of %2 s").arg(m_workspace.time(), 0, 'f', 2).arg(seconds, 0, 'f', 2);
@@ -281,8 +261,8 @@ class TimelinePanel : public QWidget {
   QToolButton *m_home = nullptr, *m_back = nullptr, *m_play = nullptr, *m_forward = nullptr,
               *m_end = nullptr, *m_clear = nullptr;
   QLabel *m_label = nullptr, *m_frameCount = nullptr;
-  QSpinBox* m_frame = nullptr;
-  QDoubleSpinBox* m_tolerance = nullptr;
+  CountBox* m_frame = nullptr;
+  NumberBox* m_tolerance = nullptr;
   QTimer m_rowsTimer;
   bool m_updating = false;
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "shell/number_box.h"
+
 namespace marey::gui {
 namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -20,9 +22,9 @@ WayPointForm::WayPointForm(CurrentPath& path, PathView& view, QWidget* parent)
   refresh();
 }
 
-QDoubleSpinBox* WayPointForm::number(const char* name, const QString& suffix, double low,
-                                     double high, double step, const QString& toolTip) {
-  auto* box = new QDoubleSpinBox(this);
+NumberBox* WayPointForm::number(const char* name, const QString& suffix, double low, double high,
+                                double step, const QString& toolTip) {
+  auto* box = new NumberBox(this);
   box->setObjectName(QLatin1String(name));
   box->setRange(low, high);
   box->setDecimals(2);
@@ -30,8 +32,6 @@ QDoubleSpinBox* WayPointForm::number(const char* name, const QString& suffix, do
   box->setSuffix(suffix);
   box->setToolTip(toolTip);
   box->setAccessibleName(toolTip);
-  // An edit for every digit would fill the history.
-  box->setKeyboardTracking(false);
   return box;
 }
 
@@ -40,7 +40,7 @@ void WayPointForm::build() {
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setHorizontalSpacing(kSpacing);
   grid->setVerticalSpacing(4);
-  m_index = new QSpinBox(this);
+  m_index = new CountBox(this);
   m_index->setObjectName(QStringLiteral("wayPointIndex"));
   m_index->setSpecialValueText(tr("none"));
   m_index->setToolTip(tr("The way-point whose numbers are shown"));
@@ -133,15 +133,15 @@ void WayPointForm::refresh() {
   const bool shown = chosen && *chosen < points.size();
   m_filling = true;
   m_index->setRange(0, static_cast<int>(points.size()));
-  m_index->setValue(shown ? static_cast<int>(*chosen) + 1 : 0);
+  m_index->display(shown ? static_cast<int>(*chosen) + 1 : 0);
   m_count->setText(tr("of %1").arg(points.size()));
   m_remove->setEnabled(shown && points.size() > 2);
   for (QWidget* widget :
        std::initializer_list<QWidget*>{m_x, m_z, m_ownSpeed, m_ownFacing, m_ownTime})
     widget->setEnabled(shown);
   const WayPoint point = shown ? points[*chosen] : WayPoint{};
-  m_x->setValue(point.x);
-  m_z->setValue(point.z);
+  m_x->display(point.x);
+  m_z->display(point.z);
   m_ownSpeed->setChecked(point.speedMS.has_value());
   m_ownFacing->setChecked(point.facing.has_value());
   m_ownTime->setChecked(point.timeS.has_value());
@@ -150,13 +150,12 @@ void WayPointForm::refresh() {
   m_time->setEnabled(point.timeS.has_value());
   if (shown) {
     // Values that are not fixed show what they come to, so that fixing them changes nothing.
-    m_time->setValue(point.timeS.value_or(arrivalTimes(points)[*chosen]));
+    m_time->display(point.timeS.value_or(arrivalTimes(points)[*chosen]));
     const PathCurve& curve = m_path.curve();
     const bool sampled = !curve.frames.empty();
-    m_speed->setValue(
+    m_speed->display(
         point.speedMS.value_or(sampled ? curve.speedMS[m_path.frameAt(*chosen)] : kUsualSpeedMS));
-    m_facing->setValue(std::remainder(m_path.headingAt(*chosen), 2.0 * std::numbers::pi) *
-                       kDegrees);
+    m_facing->display(std::remainder(m_path.headingAt(*chosen), 2.0 * std::numbers::pi) * kDegrees);
   }
   m_filling = false;
 }

@@ -10,6 +10,7 @@
 
 #include "panels/current_path.h"
 #include "panels/path_view.h"
+#include "shell/number_box.h"
 
 namespace marey::gui {
 
@@ -19,8 +20,8 @@ class WayPointForm : public QWidget {
   WayPointForm(CurrentPath& path, PathView& view, QWidget* parent);
 
  private:
-  QDoubleSpinBox* number(const char* name, const QString& suffix, double low, double high,
-                         double step, const QString& toolTip);
+  NumberBox* number(const char* name, const QString& suffix, double low, double high, double step,
+                    const QString& toolTip);
   void build();
   void connectEdits();
   void refresh();
@@ -29,10 +30,10 @@ class WayPointForm : public QWidget {
 
   CurrentPath& m_path;
   PathView& m_view;
-  QSpinBox* m_index = nullptr;
+  CountBox* m_index = nullptr;
   QLabel* m_count = nullptr;
-  QDoubleSpinBox *m_x = nullptr, *m_z = nullptr, *m_speed = nullptr, *m_facing = nullptr,
-                 *m_time = nullptr;
+  NumberBox *m_x = nullptr, *m_z = nullptr, *m_speed = nullptr, *m_facing = nullptr,
+            *m_time = nullptr;
   QCheckBox *m_ownSpeed = nullptr, *m_ownFacing = nullptr, *m_ownTime = nullptr;
   QPushButton* m_remove = nullptr;
   bool m_filling = false;

@@ -13,6 +13,8 @@
 #include <QStatusBar>
 
 #include "shell/job_bar.h"
+#include "shell/key_rules.h"
+#include "shell/number_box.h"
 #include <qtadvanceddocking/DockAreaWidget.h>
 #include <qtadvanceddocking/DockManager.h>
 #include <qtadvanceddocking/DockWidget.h>
@@ -43,6 +45,7 @@ MainWindow::MainWindow(Workspace& workspace, const std::vector<PanelSpec>& panel
     : m_workspace(workspace), m_autosave(std::make_unique<Autosave>(workspace)) {
   setObjectName(QStringLiteral("marey"));
   setAcceptDrops(true);
+  new KeyRules(this);
   resize(1500, 920);
   buildDocks(panels);
   buildMenus();
@@ -173,6 +176,7 @@ bool MainWindow::event(QEvent* event) {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+  finishTyping();
   if (!mayDiscard()) {
     event->ignore();
     return;

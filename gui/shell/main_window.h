@@ -70,6 +70,8 @@ class MainWindow : public QMainWindow {
   void openDemo();
   void openNew();
   bool save();
+  /// Whether the document may take the place of what the file holds: an empty one asks.
+  bool mayReplace(const QString& file);
   bool saveAs();
   /// Asks about unsaved changes; false: stay.
   bool mayDiscard();

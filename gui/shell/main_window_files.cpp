@@ -55,6 +55,7 @@ void MainWindow::open(const QString& given) {
 
 bool MainWindow::save() {
   if (m_workspace.file().isEmpty()) return saveAs();
+  if (!mayReplace(m_workspace.file())) return false;
   try {
     m_workspace.save(m_workspace.file());
   } catch (const Error& error) {
@@ -70,7 +71,7 @@ bool MainWindow::save() {
 bool MainWindow::saveAs() {
   const QString file = askSaveFile(this, tr("Save the experiment"), m_workspace.file(),
                                    tr("Experiments (*.json)"), QStringLiteral("json"));
-  if (file.isEmpty()) return false;
+  if (file.isEmpty() || !mayReplace(file)) return false;
   try {
     m_workspace.save(file);
   } catch (const Error& error) {
@@ -80,6 +81,22 @@ bool MainWindow::saveAs() {
   rememberRecent(file);
   m_autosave->remove();
   return true;
+}
+
+bool MainWindow::mayReplace(const QString& file) {
+  if (!isEmpty(m_workspace.experiment()) || QFileInfo(file).size() == 0) return true;
+  try {
+    if (isEmpty(readExperiment(file.toStdString()))) return true;
+  } catch (const Error&) {
+    // What cannot be read here may be worth more than an empty document.
+  }
+  QMessageBox box(QMessageBox::Warning, tr("Marey"),
+                  tr("The document is empty, but “%1” is not. Replace what it holds?").arg(file),
+                  QMessageBox::Save | QMessageBox::Cancel, this);
+  box.setObjectName(QStringLiteral("replaceBox"));
+  box.button(QMessageBox::Save)->setText(tr("Replace it"));
+  box.setDefaultButton(QMessageBox::Cancel);
+  return box.exec() == QMessageBox::Save;
 }
 
 bool MainWindow::mayDiscard() {
@@ -118,8 +135,8 @@ void MainWindow::offerRecovery() {
 }
 
 void MainWindow::openRecovered(const Recovered& recovered) {
-  m_workspace.open({.folder = recovered.experiment.folder}, recovered.file);
-  m_workspace.edit(tr("Recover unsaved work"), [&](Experiment& e) { e = recovered.experiment; });
+  // It is where the history begins: undo must not go on to what nobody ever made.
+  m_workspace.openUnsaved(recovered.experiment, recovered.file);
   // Until there is another copy, this is the only one.
   if (m_autosave->write()) Autosave::discard(recovered);
 }

@@ -9,6 +9,7 @@
 
 #include "shell/command_palette.h"
 #include "shell/main_window.h"
+#include "shell/number_box.h"
 #include <qtadvanceddocking/DockManager.h>
 #include <qtadvanceddocking/DockWidget.h>
 
@@ -20,7 +21,10 @@ QAction* MainWindow::add(QMenu* menu, const QString& name, const QString& text,
   action->setObjectName(name);
   action->setShortcut(keys);
   action->setProperty("menu", menu->title().remove(QLatin1Char('&')));
-  connect(action, &QAction::triggered, this, [run] { run(); });
+  connect(action, &QAction::triggered, this, [run] {
+    finishTyping();
+    run();
+  });
   menu->addAction(action);
   m_commands.push_back(action);
   return action;

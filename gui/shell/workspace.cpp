@@ -107,9 +107,18 @@ void Workspace::followRenamed(const Experiment& before) {
 }
 
 void Workspace::open(Experiment experiment, const QString& file) {
+  Experiment saved = experiment;
+  start(std::move(experiment), std::move(saved), file);
+}
+
+void Workspace::openUnsaved(Experiment experiment, const QString& file) {
+  start(std::move(experiment), std::nullopt, file);
+}
+
+void Workspace::start(Experiment experiment, std::optional<Experiment> saved, const QString& file) {
   m_drawings.clear();
   cancelWork();
-  m_saved = experiment;
+  m_saved = std::move(saved);
   m_history = History<Experiment>(std::move(experiment));
   m_file = file;
   m_currentPath = 0;

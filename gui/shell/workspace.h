@@ -38,8 +38,10 @@ class Workspace : public QObject {
   void goToEdit(size_t index);
   /// Another document: history, motions and selection start anew.
   void open(Experiment experiment, const QString& file);
+  /// The same for one that is not as it stands in `file`, and there is no way back behind it.
+  void openUnsaved(Experiment experiment, const QString& file);
   QString file() const { return m_file; }  ///< empty: never saved
-  bool modified() const { return m_history.state() != m_saved; }
+  bool modified() const { return !m_saved || m_history.state() != *m_saved; }
   /// Writes to `file` and takes it as the document's place; relative names are kept pointing at
   /// their files. Throws FileError, and then nothing has changed.
   void save(const QString& file);
@@ -134,6 +136,7 @@ class Workspace : public QObject {
     std::vector<int> replaces;  ///< groups that go when the first motions are there
     std::shared_ptr<std::string> modelHash;
   };
+  void start(Experiment experiment, std::optional<Experiment> saved, const QString& file);
   void documentMoved(const Experiment& before);
   /// Motions of a system that was only renamed stay its own.
   void followRenamed(const Experiment& before);
@@ -153,7 +156,7 @@ class Workspace : public QObject {
 
   JobQueue& m_jobs;
   History<Experiment> m_history;
-  Experiment m_saved;
+  std::optional<Experiment> m_saved;  ///< none: the document is in no file
   QString m_file;
   int m_currentPath = 0;
   std::vector<MotionGroup> m_groups, m_aside;

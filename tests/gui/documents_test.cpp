@@ -124,6 +124,48 @@ TEST_F(Documents, RecoveringOneCopyKeepsTheOthers) {
   EXPECT_EQ(copies, 1) << "what was recovered is not on the disk";
 }
 
+TEST_F(Documents, UndoDoesNotGoBehindWhatWasRecovered) {
+  const fs::path saved = file("mine.json");
+  m_workspace->save(QString::fromStdString(saved));
+  const Experiment before = m_workspace->experiment();
+  autosaves().mkpath(".");
+  Experiment kept = before;
+  kept.seed = 4711;
+  writeJson(
+      autosaves().filePath("crashed.json").toStdString(),
+      {{"file", saved.string()}, {"folder", before.folder.string()}, {"experiment", toJson(kept)}});
+  answer("recoveryBox", QMessageBox::Open);
+  m_window->start({});
+  ASSERT_EQ(m_workspace->experiment(), kept);
+  EXPECT_TRUE(m_workspace->modified()) << "the file does not hold it";
+  EXPECT_FALSE(m_window->command("undo")->isEnabled());
+  m_window->command("undo")->trigger();
+  m_workspace->undo();
+  EXPECT_EQ(m_workspace->experiment(), kept);
+  m_window->command("save")->trigger();
+  EXPECT_EQ(readExperiment(saved), kept);
+  EXPECT_FALSE(m_workspace->modified());
+}
+
+TEST_F(Documents, AnEmptyDocumentAsksBeforeItReplacesAFileThatIsNot) {
+  const fs::path saved = file("mine.json");
+  m_workspace->save(QString::fromStdString(saved));
+  const Experiment before = m_workspace->experiment();
+  m_workspace->edit("All away", [](Experiment& e) {
+    e.natural.clear();
+    e.systems.clear();
+    e.paths.clear();
+  });
+  answer("replaceBox", QMessageBox::Cancel);
+  m_window->command("save")->trigger();
+  EXPECT_EQ(readExperiment(saved), before) << "the user's file is empty";
+  EXPECT_TRUE(m_workspace->modified());
+  m_answers.clear();
+  answer("replaceBox", QMessageBox::Save);
+  m_window->command("save")->trigger();
+  EXPECT_TRUE(readExperiment(saved).systems.empty());
+}
+
 TEST_F(Documents, ACopyThatCannotBeReadIsSetAsideAndNamed) {
   autosaves().mkpath(".");
   std::ofstream(autosaves().filePath("cut.json").toStdString()) << "{\"file\": ";

@@ -78,7 +78,9 @@ struct Chart {
 struct ChartGrid {
   std::string title = {};
   std::vector<Chart> charts = {};
-  int columns = 1;
+  int columns = 1;  ///< fewer or more where plots would be too small to read
+  /// What the rows' plots have of the height, such as {1, 0.4}; empty: the same.
+  std::vector<double> rowShares = {};
   bool shareX = false, shareY = false;
   ChartTheme theme = {};
 };

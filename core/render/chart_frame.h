@@ -2,6 +2,7 @@
 // a tooltip over a picture of a chart.
 #pragma once
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -27,5 +28,16 @@ struct ChartFrame {
 /// Frames of every chart of the grid in its order, as drawSvg, drawPdf and drawImage place them.
 /// Throws InputError as those.
 std::vector<ChartFrame> framesOf(const ChartGrid& grid, const ChartSize& size);
+
+/// A text of a drawn chart and the rectangle that it fills, in the pixels of ChartSize.
+struct ChartText {
+  std::string text;
+  double left = 0.0, top = 0.0, right = 0.0, bottom = 0.0;
+};
+/// Every text, as drawSvg, drawPdf and drawImage place it. Throws InputError as those.
+std::vector<ChartText> textsOf(const ChartGrid& grid, const ChartSize& size);
+
+/// The height that a page of this width needs for every plot to be readable.
+double leastHeight(const ChartGrid& grid, double width);
 
 }  // namespace marey::render

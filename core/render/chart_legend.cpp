@@ -44,7 +44,8 @@ int flow(Drawing& drawing, const std::vector<LegendItem>& items, double width, c
   double x = 0.0;
   int line = 0;
   for (const LegendItem& item : items) {
-    const double itemWidth = swatchWidth + swatchGap + drawing.textWidth(item.name, legendStyle());
+    const double itemWidth =
+        std::min(width, swatchWidth + swatchGap + drawing.textWidth(item.name, legendStyle()));
     if (x > 0.0 && x + itemWidth > width) {
       x = 0.0;
       ++line;
@@ -79,7 +80,9 @@ double drawLegend(Drawing& drawing, const std::vector<LegendItem>& items, const 
   flow(drawing, items, box.width(), [&](const LegendItem& item, double x, int line) {
     const Point at{box.left + x, box.top + 13.0 + line * lineHeight};
     drawSwatch(drawing, item.look, at);
-    drawing.text(item.name, {at.x + swatchWidth + swatchGap, at.y}, legendStyle());
+    const double room = box.width() - swatchWidth - swatchGap;
+    drawing.text(elided(drawing, item.name, legendStyle(), room),
+                 {at.x + swatchWidth + swatchGap, at.y}, legendStyle());
   });
   return legendHeight(drawing, items, box.width());
 }

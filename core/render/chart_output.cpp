@@ -5,6 +5,7 @@
 #include <cairo-svg.h>
 
 #include "base/error.h"
+#include "render/chart_frame.h"
 #include "render/chart_private.h"
 
 namespace marey::render {
@@ -117,6 +118,21 @@ std::string drawPdf(const ChartGrid& grid, const ChartSize& size, const Recipe& 
   cairo_surface_set_device_scale(surface, pointsPerPixel, pointsPerPixel);
   drawOn(surface, grid, size);
   return pdf;
+}
+
+std::vector<ChartText> textsOf(const ChartGrid& grid, const ChartSize& size) {
+  check(grid);
+  Canvas canvas(1, 1);
+  std::vector<TextRecord> records;
+  Drawing drawing(canvas.context(), &records);
+  drawGrid(drawing, grid, size);
+  std::vector<ChartText> out;
+  for (const TextRecord& record : records) {
+    if (record.text.empty()) continue;
+    const Box box = boxOf(drawing, record.text, record.at, record.style);
+    out.push_back({record.text, box.left, box.top, box.right, box.bottom});
+  }
+  return out;
 }
 
 Image drawImage(const ChartGrid& grid, const ChartSize& size, double scale) {

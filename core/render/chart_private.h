@@ -45,9 +45,28 @@ double directLabelWidth(Drawing& drawing, const Chart& chart);
 TextStyle tickStyle();
 Ticks ticksOf(const Axis& axis, const Range& range, double pixels, double pixelsPerTick);
 
+/// The text, cut with a dot-dot-dot where it is wider.
+std::string elided(Drawing& drawing, const std::string& text, const TextStyle& style, double width);
+
+/// "speed [cm/s]"
+std::string axisTitle(const Axis& axis);
+TextStyle axisTitleStyle();
+TextStyle chartTitleStyle();
+
+/// Names of rules inside the plot: not over each other as far as there is room.
+struct PlacedText {
+  std::string text;
+  Point at;
+  TextStyle style;
+};
+std::vector<PlacedText> ruleLabels(Drawing& drawing, const Chart& chart, const Mapping& map);
+/// The rectangle of a text on the page; of turned ones only those that run upwards.
+Box boxOf(Drawing& drawing, const std::string& text, Point at, const TextStyle& style);
+bool overlap(const Box& a, const Box& b);
+
 /// What a cell shows besides its plot.
 struct CellLook {
-  bool xLabels = true, yLabels = true;
+  bool xLabels = true, yLabels = true, axisTitles = true;
 };
 
 struct PlacedCell {

@@ -58,20 +58,13 @@ void drawDots(Drawing& drawing, const Series& s, const Mapping& map) {
 }
 
 void drawRule(Drawing& drawing, const Series& s, const Mapping& map) {
-  TextStyle style{.size = 12.0, .colour = mix(s.colour, grey(0.0), 0.2), .halo = true};
   if (s.kind == SeriesKind::HorizontalRule) {
     const double y = map(map.x.low, s.y.front()).y;
     drawing.line({map.plot.left, y}, {map.plot.right, y}, s.colour, s.width, s.dashed);
-    style.align = Align::Right;
-    const bool below = y - map.plot.top < 16.0;
-    if (s.inLegend) drawing.text(s.name, {map.plot.right - 4.0, below ? y + 14.0 : y - 5.0}, style);
     return;
   }
   const double x = map(s.x.front(), map.y.low).x;
   drawing.line({x, map.plot.top}, {x, map.plot.bottom}, s.colour, s.width, s.dashed);
-  style.align = x > map.plot.left + 0.6 * map.plot.width() ? Align::Right : Align::Left;
-  const double shift = style.align == Align::Right ? -5.0 : 5.0;
-  if (s.inLegend) drawing.text(s.name, {x + shift, map.plot.top + 13.0}, style);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ std::map<std::string, std::string> parseArchive(std::string_view bytes, const st
       throw InputError({.path = origin}, "a zip archive with every name once", "a name twice");
     // "Not a zip archive" is what libzip says of one whose end is missing.
     throw InputError({.path = origin}, "a whole zip archive",
-                     "one that is damaged or cut (was the download complete?)" +
+                     "one that is damaged or cut (an incomplete download?)" +
                          (code == ZIP_ER_NOZIP ? "" : ": " + error.text()));
   }
   std::map<std::string, std::string> out;

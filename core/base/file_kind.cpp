@@ -31,7 +31,7 @@ struct Magic {
 };
 
 constexpr std::array kMagics{
-    Magic{0, "\x89HDF\r\n\x1a\n"sv, "hdf5", "an HDF5 file (Keras, h5py or MATLAB 7.3)",
+    Magic{0, "\x89HDF\r\n\x1a\n"sv, "hdf5", "an HDF5 file, as Keras, h5py and MATLAB 7.3 write",
           "save its arrays with numpy.savez or torch.save"},
     Magic{0, "\x93NUMPY"sv, "npy", "a NumPy array (.npy)", ""},
     Magic{0, "\x1f\x8b"sv, "gzip", "a gzip archive", kUnpack},
@@ -202,7 +202,6 @@ std::optional<FileKind> protobufKind(std::string_view head) {
 
 std::optional<FileKind> otherBinaryKind(std::string_view head) {
   if (auto kind = zipKind(head)) return kind;
-  if (auto kind = safetensorsKind(head)) return kind;
   if (auto kind = protobufKind(head)) return kind;
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(head[i]); };
   if (head.size() >= 2 && byte(1) == 0x50 && byte(0) >= 2 && byte(0) < 64 && !looksLikeText(head))
@@ -226,6 +225,8 @@ std::string FileKind::text() const {
 std::optional<FileKind> fileKind(std::string_view head) {
   head = head.substr(0, kFileHeadBytes);
   if (head.empty()) return kindOf("empty", "an empty file", kDownloadAgain);
+  // First, for the length that it begins with may look like any magic number.
+  if (auto kind = safetensorsKind(head)) return kind;
   for (const Magic& magic : kMagics)
     if (head.size() >= magic.at + magic.bytes.size() &&
         head.substr(magic.at, magic.bytes.size()) == magic.bytes)

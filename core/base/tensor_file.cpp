@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "base/atomic_file.h"
+#include "base/file_kind.h"
 #include "base/hash.h"
 
 namespace marey {
@@ -167,9 +168,36 @@ Tensor parseTensor(const std::string& key, const Json& entry, const Source& sour
   return out;
 }
 
+std::string bytesAt(const Source& source, uint64_t offset, size_t count) {
+  std::string out(count, '\0');
+  if (count > 0) source.read(offset, reinterpret_cast<std::byte*>(out.data()), count);
+  return out;
+}
+
+/// A zip archive ends with its directory, which a comment of up to 64 KiB may follow.
+bool isCutArchive(std::string_view head, const Source& source) {
+  if (!head.starts_with("PK\x03\x04")) return false;
+  const uint64_t tail = std::min<uint64_t>(source.size, (uint64_t{1} << 16) + 22);
+  return bytesAt(source, source.size - tail, tail).find("PK\x05\x06") == std::string::npos;
+}
+
+/// Files of another kind get their name, whatever their first eight bytes say of a header.
+void requireOwnKind(const Source& source, const std::string& origin) {
+  const std::string head = bytesAt(source, 0, std::min<uint64_t>(source.size, kFileHeadBytes));
+  const auto kind = fileKind(head);
+  if (!kind || kind->id == "marey" || kind->id == "safetensors") return;
+  std::string found = kind->text();
+  if (isCutArchive(head, source))
+    found += " that is damaged or cut (an incomplete download?)";
+  else if (kind->id == "torch")
+    found += " (marey model import reads it)";
+  throw InputError({.path = origin}, "a Marey file", found);
+}
+
 TensorFile parse(const Source& source, const std::string& origin) {
   uint64_t headerSize = 0;
-  if (source.size < 8) throw InputError({.path = origin}, "a tensor file", "fewer than 8 bytes");
+  requireOwnKind(source, origin);
+  if (source.size < 8) throw InputError({.path = origin}, "a Marey file", "fewer than 8 bytes");
   source.read(0, reinterpret_cast<std::byte*>(&headerSize), 8);
   if (headerSize > source.size - 8)
     throwInput({.path = origin}, fmt::format("a header within {} bytes", source.size - 8),

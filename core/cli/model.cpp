@@ -15,7 +15,7 @@ namespace marey::cli {
 namespace {
 
 struct Options {
-  std::string model, config, out, checkpoint, data, vectors, name;
+  std::string model, config, out, checkpoint, data, vectors, name, stateDict;
   bool half = false;
 };
 
@@ -65,16 +65,22 @@ void runImport(const Options& o, const Context& context) {
       o.data.empty() ? Standardiser{} : standardiserFromArchive(o.data);
   const auto model =
       moglow::importCheckpoint(o.checkpoint, readJson(o.config), o.config, standardiser,
-                               std::filesystem::path(o.out).stem().string());
+                               std::filesystem::path(o.out).stem().string(), o.stateDict);
   writeTensorFile(o.out, model->save());
   Json result = infoJson(model->info());
   result["written"] = o.out;
-  context.print(result,
-                fmt::format("{}: {:.2f} M parameters{}", o.out,
-                            static_cast<double>(model->info().parameters) / 1e6,
-                            standardiser.empty()
-                                ? ", without standardiser (give --data CLIPS.npz to refit it)"
-                                : ""));
+  result["provenance"] = model->info().provenance;
+  const Json& provenance = model->info().provenance;
+  std::string text = fmt::format(
+      "{}: {:.2f} M parameters{}\nstate dict: {}", o.out,
+      static_cast<double>(model->info().parameters) / 1e6,
+      standardiser.empty() ? ", without standardiser (give --data CLIPS.npz to refit it)" : "",
+      provenance["state_dict"].get<std::string>());
+  std::string leftOut;
+  for (const Json& name : provenance["left_out"])
+    leftOut += (leftOut.empty() ? "" : ", ") + name.get<std::string>();
+  if (!leftOut.empty()) text += "\nleft out: " + leftOut;
+  context.print(result, text);
 }
 
 /// Half precision leaves standardisers alone: their rounding would move every pose.
@@ -127,6 +133,8 @@ void addModelCommand(CLI::App& app, Context& context) {
   import->add_option(
       "--data", o->data,
       "Their training clips (.npz): refits the standardiser, which checkpoints lack");
+  import->add_option("--state-dict", o->stateDict,
+                     "Which state dict of a checkpoint that holds several: graph, ema, ...");
   import->add_option("--out", o->out, "Model to write")->required();
 
   auto* exporting =

@@ -57,8 +57,11 @@ std::unique_ptr<MotionModel> loadModel(const std::string& path,
   TensorFile file = readTensorFile(path);
   JsonReader reader(file.metadata, path);
   if (reader.optional<std::string>("kind", "") != "model")
-    throw InputError({.path = path}, "a Marey model",
-                     "a file of kind '" + reader.optional<std::string>("kind", "unknown") + "'");
+    throw InputError(
+        {.path = path}, "a Marey model",
+        file.metadata.empty()
+            ? "a safetensors file of another program (marey model import reads it)"
+            : "a file of kind '" + reader.optional<std::string>("kind", "unknown") + "'");
   const ModelFamily& family = familyNamed(reader.required<std::string>("family"), families, path);
   return family.load(std::move(file), path, options);
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "nn/pickle_machine.h"
+#include "nn/pickle_names.h"
 #include "nn/utf8.h"
 
 namespace marey::pickle {
@@ -14,15 +15,19 @@ using Kind = Value::Kind;
 
 struct StorageType {
   std::string_view name;
-  DType dtype;
+  Element element;
 };
-constexpr std::array<StorageType, 7> kStorageTypes{{{"torch.FloatStorage", DType::F32},
-                                                    {"torch.DoubleStorage", DType::F64},
-                                                    {"torch.HalfStorage", DType::F16},
-                                                    {"torch.LongStorage", DType::I64},
-                                                    {"torch.IntStorage", DType::I32},
-                                                    {"torch.ByteStorage", DType::U8},
-                                                    {"torch.BoolStorage", DType::U8}}};
+constexpr std::array<StorageType, 10> kStorageTypes{
+    {{"torch.FloatStorage", {DType::F32}},
+     {"torch.DoubleStorage", {DType::F64}},
+     {"torch.HalfStorage", {DType::F16}},
+     {"torch.BFloat16Storage", {DType::F32, Element::Form::BFloat16}},
+     {"torch.LongStorage", {DType::I64}},
+     {"torch.IntStorage", {DType::I32}},
+     {"torch.ShortStorage", {DType::I32, Element::Form::Int16}},
+     {"torch.CharStorage", {DType::I32, Element::Form::Int8}},
+     {"torch.ByteStorage", {DType::U8}},
+     {"torch.BoolStorage", {DType::U8}}}};
 
 using Function = Value* (*)(const std::vector<Value*>& arguments, Arena& arena, const Place& place);
 
@@ -116,6 +121,12 @@ Value* numpyType(const std::vector<Value*>& arguments, Arena& arena, const Place
   return out;
 }
 
+Value* opaque(const std::string& className, Arena& arena, const Place& place) {
+  Value* out = arena.make(Kind::Opaque, place);
+  out->text = className;
+  return out;
+}
+
 template <typename T>
 std::optional<T> as(std::string_view code, std::string_view wanted, const std::string& bytes) {
   if (code != wanted || bytes.size() != sizeof(T)) return std::nullopt;
@@ -126,7 +137,8 @@ std::optional<T> as(std::string_view code, std::string_view wanted, const std::s
 
 /// numpy.core.multiarray.scalar(dtype, bytes)
 Value* numpyScalar(const std::vector<Value*>& arguments, Arena& arena, const Place& place) {
-  const std::string& code = ofKind(arguments[0], Kind::NumpyType, place).text;
+  const Value& type = ofKind(arguments[0], Kind::NumpyType, place);
+  const std::string code = type.integer == 0 ? type.text : "";
   const std::string bytes = bytesOf(arguments[1], place);
   const auto made = [&](Kind kind, double real, int64_t integer) {
     Value* out = arena.make(kind, place);
@@ -139,8 +151,23 @@ Value* numpyScalar(const std::vector<Value*>& arguments, Arena& arena, const Pla
   if (const auto value = as<int64_t>(code, "i8", bytes)) return made(Kind::Int, 0, *value);
   if (const auto value = as<int32_t>(code, "i4", bytes)) return made(Kind::Int, 0, *value);
   if (const auto value = as<uint8_t>(code, "b1", bytes)) return made(Kind::Bool, 0, *value != 0);
-  throw InputError(place, "a numpy scalar of type f4, f8, i4, i8 or b1",
-                   fmt::format("'{}' in {} bytes", printable(code), bytes.size()));
+  return opaque("numpy." + printable(type.text), arena, place);
+}
+
+/// A class whose constructor takes a dictionary, a function for what is missing, or nothing.
+Value* dictionaryLike(const Value& arguments, Arena& arena, const Place& place) {
+  Value* out = arena.make(Kind::Dict, place);
+  for (const Value* argument : itemsOf(&arguments, place))
+    if (argument->kind == Kind::Dict) out->items = argument->items;
+  return out;
+}
+
+/// The class that a value has: helpers that rebuild one name it in their arguments.
+std::string classOf(const std::string& callee, const Value& arguments) {
+  const auto& items = arguments.items;
+  const bool names = !items.empty() && items[0]->kind == Kind::Global &&
+                     (callee.find("._reconstruct") != std::string::npos);
+  return names ? items[0]->text : callee;
 }
 
 constexpr std::array<Callable, 9> kCallables{{
@@ -166,11 +193,14 @@ auto find(const Table& table, std::string_view name) {
 
 bool isAllowed(std::string_view qualifiedName) {
   return find(kCallables, qualifiedName) != nullptr ||
-         find(kStorageTypes, qualifiedName) != nullptr;
+         find(kStorageTypes, qualifiedName) != nullptr || isDictionaryName(qualifiedName) ||
+         isOpaqueName(qualifiedName);
 }
 
 Value* call(const Value& callee, const Value& arguments, Arena& arena, const Place& place) {
   const std::string& name = ofKind(&callee, Kind::Global, place).text;
+  if (isDictionaryName(name)) return dictionaryLike(arguments, arena, place);
+  if (isOpaqueName(name)) return opaque(classOf(name, arguments), arena, place);
   const Callable* callable = find(kCallables, name);
   if (callable == nullptr)
     throw InputError(place, "a call that rebuilds a tensor or container", "a call of " + name);
@@ -196,20 +226,20 @@ Value* persistent(const Value& id, Arena& arena, const Place& place) {
   if (items.size() == 6 && items[5]->kind != Kind::None)
     throw InputError(place, "a whole storage", "a window on another storage");
   Value* out = arena.make(Kind::Storage, place);
-  out->storage = std::make_unique<Storage>(Storage{.dtype = type->dtype,
+  out->storage = std::make_unique<Storage>(Storage{.element = type->element,
                                                    .key = ofKind(items[2], Kind::Text, place).text,
                                                    .count = static_cast<uint64_t>(count)});
   return out;
 }
 
-void build(const Value& target, const Value& state, const Place& place) {
-  if (target.kind == Kind::Dict) return;
+void build(Value& target, const Value& state, const Place& place) {
+  if (target.kind == Kind::Dict || target.kind == Kind::Opaque) return;
   if (target.kind != Kind::NumpyType)
-    throwInput(place, "state of dictionaries and numpy types only", "state of {}",
+    throwInput(place, "state of dictionaries and training state only", "state of {}",
                describe(target.kind));
   const auto& items = itemsOf(&state, place);
-  const bool little = items.size() > 1 && items[1]->kind == Kind::Text && items[1]->text != ">";
-  if (!little) throw InputError(place, "little-endian numbers", "another byte order");
+  const bool big = items.size() > 1 && items[1]->kind == Kind::Text && items[1]->text == ">";
+  target.integer = big ? 1 : 0;
 }
 
 }  // namespace marey::pickle

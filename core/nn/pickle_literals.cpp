@@ -98,6 +98,7 @@ bool Machine::text(uint8_t op) {
       pushBytes(take(takeUnsigned(1)));
       return true;
     case 0x8e:
+    case 0x96:  // a bytearray
       pushBytes(take(takeUnsigned(8)));
       return true;
     default:

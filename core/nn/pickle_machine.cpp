@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "nn/pickle_names.h"
 #include "nn/utf8.h"
 
 namespace marey::pickle {
@@ -44,9 +45,11 @@ const char* describe(Kind kind) {
     case Kind::Tensor:
       return "a tensor";
     case Kind::NumpyType:
+      return "a numpy type";
+    case Kind::Opaque:
       break;
   }
-  return "a numpy type";
+  return "a value of training state";
 }
 
 Value* Arena::make(Kind kind, const Place& place) {
@@ -150,6 +153,7 @@ void Machine::pushTuple(size_t count) {
 }
 
 void Machine::appendItems(Value* list, const std::vector<Value*>& items) {
+  if (list->kind == Kind::Opaque) return;
   if (list->kind != Kind::List) refuse("a list to append to", describe(list->kind));
   list->items.insert(list->items.end(), items.begin(), items.end());
 }
@@ -209,6 +213,7 @@ bool Machine::sequence(uint8_t op) {
 }
 
 void Machine::setItems(Value* dict, const std::vector<Value*>& items) {
+  if (dict->kind == Kind::Opaque) return;
   if (dict->kind != Kind::Dict) refuse("a dictionary to fill", describe(dict->kind));
   if (items.size() % 2 != 0) refuse("pairs of keys and values", "a key without a value");
   dict->items.insert(dict->items.end(), items.begin(), items.end());
@@ -274,7 +279,8 @@ void Machine::pushGlobal(std::string_view module, std::string_view name) {
   const std::string qualified = fmt::format("{}.{}", module, name);
   if (!isAllowed(qualified))
     refuse("names of tensors and containers only",
-           fmt::format("'{}', which is refused (nothing was run)", printable(qualified)));
+           fmt::format("'{}', which is refused (nothing was run); {}", printable(qualified),
+                       adviceFor(qualified)));
   Value* out = make(Kind::Global);
   out->text = qualified;
   push(out);
@@ -300,6 +306,13 @@ bool Machine::object(uint8_t op) {
     }
     case 'R':
     case 0x81: {  // 0x81: NEWOBJ
+      const Value* arguments = pop();
+      const Value* callee = pop();
+      push(call(*callee, *arguments, m_arena, place()));
+      return true;
+    }
+    case 0x92: {  // NEWOBJ_EX: with named arguments, which no allowed name needs
+      pop();
       const Value* arguments = pop();
       const Value* callee = pop();
       push(call(*callee, *arguments, m_arena, place()));

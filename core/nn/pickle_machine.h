@@ -15,9 +15,20 @@
 
 namespace marey::pickle {
 
+/// How a storage keeps its values. Types that Tensor lacks are widened to one that holds them.
+struct Element {
+  enum class Form { Plain, BFloat16, Int8, Int16 };
+  DType dtype = DType::F32;  ///< as it is read
+  Form form = Form::Plain;
+
+  size_t bytes() const {  ///< of one value in the file
+    return form == Form::Plain ? byteSize(dtype) : form == Form::Int8 ? 1 : 2;
+  }
+};
+
 /// The values of one storage of the file, named by `key`.
 struct Storage {
-  DType dtype = DType::F32;
+  Element element;
   std::string key;
   uint64_t count = 0;
 };
@@ -45,7 +56,8 @@ struct Value {
     Global,  ///< an allowed name, "module.name" in `text`
     Storage,
     Tensor,
-    NumpyType,  ///< its code ("f8") in `text`
+    NumpyType,  ///< its code ("f8") in `text`; `integer` is 1 for big-endian
+    Opaque,     ///< a value of training state: the name of its class in `text`
   };
   Kind kind = Kind::None;
   int64_t integer = 0;
@@ -128,8 +140,8 @@ bool isAllowed(std::string_view qualifiedName);
 Value* call(const Value& callee, const Value& arguments, Arena& arena, const Place& place);
 /// What a persistent id stands for: ('storage', type, key, location, count[, None]).
 Value* persistent(const Value& id, Arena& arena, const Place& place);
-/// Checks the state that is set on a value. It is then forgotten: dictionaries carry attributes
-/// that no tensor needs, numpy types their byte order, which must be little-endian.
-void build(const Value& target, const Value& state, const Place& place);
+/// Takes the state that is set on a value. It is then forgotten, but for the byte order of numpy
+/// types: dictionaries carry attributes that no tensor needs.
+void build(Value& target, const Value& state, const Place& place);
 
 }  // namespace marey::pickle

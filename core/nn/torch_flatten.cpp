@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "nn/pickle_names.h"
+
 namespace marey::pickle {
 namespace {
 
@@ -17,6 +19,11 @@ bool isScalar(const Value& value) {
          value.kind == Kind::Float || value.kind == Kind::Text;
 }
 
+bool isOpaque(const Value& value) {
+  return value.kind == Kind::Opaque || value.kind == Kind::NumpyType ||
+         (value.kind == Kind::Global && isOpaqueName(value.text));
+}
+
 }  // namespace
 
 Flattener::Flattener(TensorReader& reader, const TorchTensorFilter& filter, std::string origin)
@@ -30,6 +37,8 @@ TorchCheckpoint Flattener::flatten(const Value& root) {
   visit(root, {}, 0);
   TorchCheckpoint out;
   out.tensors = std::move(m_tensors);
+  out.opaque = std::move(m_opaque);
+  out.skipped = std::move(m_skipped);
   // Appended to the underlying vector: setting keys one by one would search it every time.
   auto& object = out.scalars.get_ref<Json::object_t&>();
   for (auto& [path, value] : m_scalars) object.emplace_back(path, std::move(value));
@@ -73,6 +82,19 @@ Json Flattener::scalar(const Value& value, const std::string& path) {
 }
 
 std::string Flattener::keyText(const Value& key, const std::string& path) {
+  if (isOpaque(key)) {
+    chargeText(key.text.size(), path);
+    return key.text;
+  }
+  if (key.kind == Kind::Tuple && std::all_of(key.items.begin(), key.items.end(),
+                                             [](const Value* item) { return isScalar(*item); })) {
+    std::string out;
+    for (const Value* item : key.items) {
+      out += (out.empty() ? "(" : ", ") + keyText(*item, path);
+      chargeText(out.size(), path);
+    }
+    return out + ")";
+  }
   if (!isScalar(key)) throw InputError(place(path), "text or a number as key", describe(key.kind));
   const Json value = scalar(key, path);
   return value.is_string() ? value.get<std::string>() : value.dump();
@@ -85,11 +107,13 @@ void Flattener::visit(const Value& value, const std::string& path, int depth) {
   if (value.kind == Kind::Dict) return visitDict(value, path, depth);
   if (value.kind == Kind::List || value.kind == Kind::Tuple) return visitList(value, path, depth);
   if (value.kind == Kind::Bytes || value.kind == Kind::BigInt) return;
-  if (!isScalar(value) && value.kind != Kind::Tensor)
+  if (!isScalar(value) && value.kind != Kind::Tensor && !isOpaque(value))
     throw InputError(place(path), "a tensor, container, number or text", describe(value.kind));
   if (!m_seen.insert(path).second) throw InputError(place(path), "one value of this path", "two");
   if (value.kind == Kind::Tensor)
     addTensor(*value.view, path);
+  else if (isOpaque(value))
+    m_opaque.emplace(path, value.text);
   else
     m_scalars.emplace(path, scalar(value, path));
 }
@@ -118,10 +142,12 @@ void Flattener::visitList(const Value& list, const std::string& path, int depth)
 }
 
 void Flattener::addTensor(const View& view, const std::string& path) {
-  if (m_filter && !m_filter(path))
-    m_reader.check(view, path);
-  else
+  if (!m_filter || m_filter(path)) {
     m_tensors.emplace(path, m_reader.read(view, path));
+    return;
+  }
+  m_reader.check(view, path);
+  m_skipped.push_back(path);
 }
 
 }  // namespace marey::pickle

@@ -36,6 +36,8 @@ class Flattener {
   std::string m_origin;
   std::map<std::string, Tensor> m_tensors;
   std::map<std::string, Json> m_scalars;
+  std::map<std::string, std::string> m_opaque;
+  std::vector<std::string> m_skipped;
   std::set<std::string> m_seen;  ///< paths of all leaves, of skipped tensors too
   size_t m_visits = 0;
   size_t m_textBytes = 0;

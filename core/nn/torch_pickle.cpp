@@ -5,6 +5,8 @@
 
 #include "base/archive.h"
 #include "base/atomic_file.h"
+#include "base/file_kind.h"
+#include "nn/pickle_names.h"
 #include "nn/torch_flatten.h"
 #include "nn/utf8.h"
 
@@ -26,23 +28,26 @@ constexpr int64_t kLegacyProtocol = 1001;
 using Files = std::map<std::string, std::string>;
 
 /// The folder of the archive that holds the checkpoint, with its '/'.
-std::string checkpointFolder(const Files& files, const std::string& origin) {
+std::string checkpointFolder(const Files& files, const std::string& origin,
+                             const std::string& archiveKind) {
   const std::string_view wanted = "/data.pkl";
   const auto data = std::find_if(files.begin(), files.end(), [&](const auto& file) {
     return file.first.ends_with(wanted) &&
            file.first.find('/') == file.first.size() - wanted.size();
   });
-  if (data == files.end())
-    throw InputError({.path = origin}, "a PyTorch checkpoint", "a zip archive without data.pkl");
+  if (data == files.end()) throw InputError({.path = origin}, "a PyTorch checkpoint", archiveKind);
   return data->first.substr(0, data->first.size() - wanted.size() + 1);
 }
 
 TorchCheckpoint parseZip(std::string_view bytes, const std::string& origin,
                          const TorchTensorFilter& filter) {
   const Files files = parseArchive(bytes, origin);
-  const std::string folder = checkpointFolder(files, origin);
+  const std::string folder =
+      checkpointFolder(files, origin, describeContent(bytes) + ", without data.pkl");
   if (files.contains(folder + "constants.pkl"))
-    throw InputError({.path = origin}, "a checkpoint of torch.save", "a TorchScript program");
+    throw InputError({.path = origin}, "a checkpoint of torch.save",
+                     "a TorchScript program (save the weights with torch.save(model.state_dict(), "
+                     "FILE))");
   const auto order = files.find(folder + "byteorder");
   if (order != files.end() && order->second != "little")
     throw InputError({.path = origin}, "little-endian storages", pickle::printable(order->second));
@@ -60,6 +65,21 @@ TorchCheckpoint parseZip(std::string_view bytes, const std::string& origin,
   const Value* root = Machine(object, 0, origin, arena).run();
   TensorReader reader(storages, origin);
   return Flattener(reader, filter, origin).flatten(*root);
+}
+
+/// The tensors alone: the format holds nothing else.
+TorchCheckpoint parseSafetensors(std::string_view bytes, const std::string& origin,
+                                 const TorchTensorFilter& filter) {
+  TorchCheckpoint out;
+  out.isSafetensors = true;
+  TensorFile file = parseTensorFile(bytes, origin + " (a safetensors file)");
+  for (auto& [name, tensor] : file.tensors) {
+    if (!filter || filter(name))
+      out.tensors.emplace(name, std::move(tensor));
+    else
+      out.skipped.push_back(name);
+  }
+  return out;
 }
 
 /// The stream before PyTorch 1.6: five pickles (magic number, protocol, system, object, storage
@@ -100,7 +120,8 @@ class LegacyStream {
 void LegacyStream::checkHeader() {
   const Value* magic = next();
   if (magic->kind != Kind::BigInt || magic->text != kLegacyMagic)
-    throw InputError(place(), "a PyTorch checkpoint", "another pickle");
+    throw InputError(place(), "a PyTorch checkpoint",
+                     "another pickle; " + pickle::adviceFor("object"));
   const Value* protocol = next();
   if (protocol->kind != Kind::Int || protocol->integer != kLegacyProtocol)
     throw InputError(place(), fmt::format("stream version {}", kLegacyProtocol), "another");
@@ -116,7 +137,7 @@ LegacyStream::ElementSizes LegacyStream::elementSizes() const {
   ElementSizes out;
   for (const Value& value : m_arena.values()) {
     if (value.kind != Kind::Storage) continue;
-    const size_t size = byteSize(value.storage->dtype);
+    const size_t size = value.storage->element.bytes();
     if (out.emplace(value.storage->key, size).first->second != size)
       throwInput(place(), "one type for each storage", "two for storage '{}'",
                  pickle::printable(value.storage->key));
@@ -167,8 +188,10 @@ TorchCheckpoint parseTorchCheckpoint(std::string_view bytes, const std::string& 
                                          "c(")
                                 .find(bytes[0]) != std::string_view::npos)
     return LegacyStream(bytes, origin).read(filter);
+  const auto kind = fileKind(bytes);
+  if (kind && kind->id == "safetensors") return parseSafetensors(bytes, origin, filter);
   throw InputError({.path = origin}, "a PyTorch checkpoint (zip container or legacy stream)",
-                   bytes.empty() ? "an empty file" : "other content");
+                   describeContent(bytes));
 }
 
 TorchCheckpoint readTorchCheckpoint(const std::filesystem::path& path,

@@ -3,9 +3,11 @@
 // interpreted by a small stack machine that knows containers, numbers, text and the few names
 // below, and refuses every other name.
 //
-// Allowed names: collections.OrderedDict, torch.Size, torch._utils._rebuild_tensor,
-// _rebuild_tensor_v2 and _rebuild_parameter, torch.{Float,Double,Half,Long,Int,Byte,Bool}Storage,
-// and numpy scalars (numpy.dtype, numpy.core.multiarray.scalar, _codecs.encode).
+// Names that make something: collections.OrderedDict and other dictionaries, torch.Size,
+// torch._utils._rebuild_tensor, _rebuild_tensor_v2 and _rebuild_parameter, the storages of PyTorch
+// (bfloat16 is widened to float32), and numpy scalars. Values of the usual classes of training
+// state (paths, dates, devices, NumPy arrays, schedulers, settings; pickle_names.cpp) are kept as
+// the name of their class. Safetensors files are read too.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +15,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/json.h"
 #include "base/tensor_file.h"
@@ -29,6 +32,10 @@ struct TorchCheckpoint {
   /// false, null, and lists of those as arrays ('optim/param_groups/0/betas': [0.9, 0.999]).
   /// Raw bytes are left out.
   Json scalars = Json::object();
+  /// path -> class of the values that are none of these ('args': "argparse.Namespace").
+  std::map<std::string, std::string> opaque;
+  bool isSafetensors = false;
+  std::vector<std::string> skipped;  ///< paths of the tensors that the filter left out
 };
 
 /// Which tensors to copy out, by path; an empty function means all of them. The rest (say, the

@@ -37,6 +37,23 @@ void copyStrided(const View& view, std::string_view from, size_t item, std::vect
   }
 }
 
+/// Values of 8 or 16 bits in 32: bfloat16 is the upper half of a float.
+std::vector<std::byte> widened(const std::vector<std::byte>& values, Element::Form form) {
+  const size_t item = form == Element::Form::Int8 ? 1 : 2;
+  std::vector<std::byte> out(values.size() / item * 4);
+  for (size_t i = 0; i < values.size() / item; ++i) {
+    uint32_t bits = 0;
+    std::memcpy(&bits, values.data() + i * item, item);
+    if (form == Element::Form::BFloat16) bits <<= 16U;
+    if (form == Element::Form::Int8)
+      bits = static_cast<uint32_t>(static_cast<int32_t>(static_cast<int8_t>(bits)));
+    if (form == Element::Form::Int16)
+      bits = static_cast<uint32_t>(static_cast<int32_t>(static_cast<int16_t>(bits)));
+    std::memcpy(out.data() + i * 4, &bits, 4);
+  }
+  return out;
+}
+
 }  // namespace
 
 TensorReader::TensorReader(const Storages& storages, std::string origin)
@@ -59,10 +76,11 @@ std::string_view TensorReader::storageBytes(const Storage& storage, const std::s
   if (found == m_storages.bytes.end())
     throwInput(place(path), "its storage", "no storage '{}'", printable(storage.key));
   const uint64_t size = found->second.size();
-  if (storage.count > size || storage.count * byteSize(storage.dtype) != size)
-    throwInput(place(path),
-               fmt::format("{} values of {} in its storage", storage.count, name(storage.dtype)),
-               "{} bytes", size);
+  if (storage.count > size || storage.count * storage.element.bytes() != size)
+    throwInput(
+        place(path),
+        fmt::format("{} values of {} in its storage", storage.count, name(storage.element.dtype)),
+        "{} bytes", size);
   return found->second;
 }
 
@@ -93,18 +111,20 @@ uint64_t TensorReader::check(const View& view, const std::string& path) const {
 
 Tensor TensorReader::read(const View& view, const std::string& path) {
   const uint64_t count = check(view, path);
-  const size_t item = byteSize(view.storage->dtype);
-  if (count > m_budget / item)
+  const Element element = view.storage->element;
+  const size_t item = element.bytes();
+  if (count > m_budget / byteSize(element.dtype))
     throw InputError(place(path), "tensors in proportion to the file",
                      "a shape that unfolds " + shapeText(view.shape));
-  m_budget -= count * item;
-  Tensor out{.dtype = view.storage->dtype, .shape = view.shape, .bytes = {}};
+  m_budget -= count * byteSize(element.dtype);
+  Tensor out{.dtype = element.dtype, .shape = view.shape, .bytes = {}};
   out.bytes.resize(count * item);
   const std::string_view bytes = storageBytes(*view.storage, path);
   if (count > 0 && isContiguous(view))
     std::memcpy(out.bytes.data(), bytes.data() + view.offset * item, count * item);
   else
     copyStrided(view, bytes, item, out.bytes);
+  if (element.form != Element::Form::Plain) out.bytes = widened(out.bytes, element.form);
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "model/weights.h"
 #include "moglow/family.h"
 #include "moglow/reference_model.h"
+#include "nn/state_dicts.h"
 #include "nn/torch_pickle.h"
 
 namespace marey::moglow {
@@ -36,24 +37,23 @@ std::string ourName(const std::string& theirs) {
   return "weights/flow.step" + match[1].str() + tail;
 }
 
-/// The state dict inside a checkpoint, under any of the usual wrappings, `module.` removed.
-std::map<std::string, Tensor> stateDict(const TorchCheckpoint& checkpoint) {
-  std::map<std::string, Tensor> out;
-  for (const auto& [path, tensor] : checkpoint.tensors) {
-    if (path.starts_with("optim/")) continue;
-    std::string key = path.substr(path.rfind('/') + 1);
-    if (key.starts_with("module.")) key = key.substr(7);
-    out[key] = tensor;
-  }
-  return out;
+constexpr const char* kFirstTensor = "flow.layers.0.actnorm.bias";
+
+/// Where the authors' name begins in a key of a state dict; see state_dicts.h.
+size_t authorsNameStart(std::string_view key) {
+  constexpr std::string_view layers = "flow.layers.";
+  for (size_t at = key.find(layers); at != std::string_view::npos; at = key.find(layers, at + 1))
+    if (at == 0 || key[at - 1] == '.') return at;
+  return std::string_view::npos;
 }
 
 /// Channels from the first actnorm, control width from the first input weight.
 void inferDimensions(const std::map<std::string, Tensor>& state, Config& config,
                      const std::string& origin) {
-  const auto bias = state.find("flow.layers.0.actnorm.bias");
+  const auto bias = state.find(kFirstTensor);
   if (bias == state.end())
-    throw InputError({.path = origin}, "a MoGlow checkpoint (tensor 'flow.layers.0.actnorm.bias')",
+    throw InputError({.path = origin},
+                     std::string("a MoGlow checkpoint (tensor '") + kFirstTensor + "')",
                      "no such tensor");
   config.poseDim = static_cast<int>(bias->second.count());
   for (const char* name :
@@ -81,23 +81,27 @@ bool hasDimensions(const Json& json) {
 std::unique_ptr<MotionModel> importCheckpoint(const std::string& checkpoint, const Json& json,
                                               const std::string& configOrigin,
                                               const Standardiser& standardiser,
-                                              const std::string& variant) {
+                                              const std::string& variant,
+                                              const std::string& wantedStateDict) {
   Config config = configFromJson(json, configOrigin);
-  const auto state = stateDict(readTorchCheckpoint(checkpoint));
-  if (!hasDimensions(json)) inferDimensions(state, config, checkpoint);
-  TensorFile file;
-  for (const auto& [name, tensor] : state) {
+  TorchCheckpoint file = readTorchCheckpoint(checkpoint, stateDictFilter(authorsNameStart));
+  const std::string origin = checkpoint + (file.isSafetensors ? " (a safetensors file)" : "");
+  const StateDict state =
+      chooseStateDict(std::move(file), authorsNameStart, kFirstTensor, wantedStateDict, origin);
+  if (!hasDimensions(json)) inferDimensions(state.tensors, config, origin);
+  TensorFile weights;
+  for (const auto& [name, tensor] : state.tensors) {
     const std::string key = ourName(name);
     if (key.empty())
-      throw InputError({.path = checkpoint, .item = "tensor '" + name + "'"}, "a tensor of MoGlow",
+      throw InputError({.path = origin, .item = "tensor '" + name + "'"}, "a tensor of MoGlow",
                        "one of another model");
     Tensor plain = tensor;
     // The authors keep channels in the middle of (1, D, 1).
     if (name.find(".actnorm.") != std::string::npos) plain.shape = {tensor.count()};
-    file.tensors[key] = std::move(plain);
+    weights.tensors[key] = std::move(plain);
   }
   auto net = std::make_shared<Net>(config, BodyFacts{}, 0);
-  loadWeights(*net, file, checkpoint);
+  loadWeights(*net, weights, origin);
   ModelInfo info;
   info.family = "moglow";
   info.variant = variant;
@@ -110,6 +114,8 @@ std::unique_ptr<MotionModel> importCheckpoint(const std::string& checkpoint, con
   for (const auto& p : net->parameters()) info.parameters += p.numel();
   info.standardiser = standardiser;
   info.provenance = {{"imported_from", checkpoint.substr(checkpoint.rfind('/') + 1)},
+                     {"state_dict", state.name},
+                     {"left_out", state.leftOut},
                      {"standardiser", standardiser.empty() ? "none" : "refitted"}};
   return std::make_unique<ReferenceModel>(std::move(info), std::move(net));
 }

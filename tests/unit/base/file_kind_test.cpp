@@ -68,6 +68,15 @@ TEST(FileKinds, OfPointersPagesAndPicturesAreTold) {
   for (const auto& [content, id] : contents) EXPECT_EQ(idOf(content), id) << quotedStart(content);
 }
 
+TEST(FileKinds, OfTensorFilesHoldWhateverTheirLengthLooksLike) {
+  // Header lengths whose bytes are the magic numbers of gzip and of UTF-16.
+  for (const char* length : {"\x1f\x8b", "\xff\xfe", "\x02\x50"}) {
+    const std::string start = length + std::string(6, '\0');
+    EXPECT_EQ(idOf(start + "{\"__metadata__\":{\"format\":\"marey\",\"marey\":\"{}\"}"), "marey");
+    EXPECT_EQ(idOf(start + "{\"a\":{\"dtype\":\"F32\"}"), "safetensors");
+  }
+}
+
 TEST(FileKinds, OfArchivesFollowTheFirstNameInThem) {
   const auto zip = [](const std::string& name) {
     std::string out = "PK\x03\x04" + std::string(22, '\0');

@@ -115,6 +115,79 @@ TEST(TorchCheckpointFromPyTorch, OfATrainingRunHasTensorsAndScalarsByPath) {
   }
 }
 
+constexpr const char* kTrainingState = R"(
+import argparse, collections, datetime, decimal, fractions, pathlib, random, uuid
+w = torch.arange(6.0)
+state = {'graph': collections.OrderedDict(w=w), 'args': argparse.Namespace(lr=0.1, out=pathlib.Path('/tmp')),
+    'path': pathlib.PurePosixPath('a/b'), 'array': np.arange(3.0), 'big': np.arange(3, dtype='>f8'),
+    'fields': np.zeros(2, dtype=[('x', 'f4')]), 'text': np.array(['a']), 'byte': np.uint8(3), 'date64': np.datetime64('2024-01-01'),
+    'device': torch.device('cuda', 0), 'dtype': torch.float32, 'size': torch.Size([1, 2]), 'layout': torch.strided,
+    'when': datetime.datetime(2024, 1, 2, tzinfo=datetime.timezone.utc), 'took': datetime.timedelta(seconds=3),
+    'losses': collections.defaultdict(list, a=[1.0, 2.0]), 'counts': collections.Counter('abca'),
+    'window': collections.deque([1.0, 2.0], maxlen=5), 'set': {1, 2}, 'frozen': frozenset({3}), 'complex': 1 + 2j,
+    'range': range(3), 'slice': slice(1, 2), 'id': uuid.UUID(int=5), 'decimal': decimal.Decimal('1.5'),
+    'fraction': fractions.Fraction(1, 3), 'rng': torch.get_rng_state(), 'numpy_rng': np.random.get_state(),
+    'generator': np.random.default_rng(1), 'python_rng': random.getstate(), 'bytes': b'abc', 'array_of_bytes': bytearray(b'abc'),
+    'keys': {torch.float32: 1, (0, 'a'): 2}, 'optimiser': torch.optim.SGD([torch.nn.Parameter(w.clone())], lr=1.0, momentum=0.9),
+    'short': torch.tensor([-2, 300], dtype=torch.int16), 'char': torch.tensor([-3, 100], dtype=torch.int8),
+    'brain': torch.tensor([1.5, -0.25, 3e38], dtype=torch.bfloat16)}
+state['scheduler'] = torch.optim.lr_scheduler.StepLR(state['optimiser'], 10)
+for protocol in (2, 4):
+    torch.save(state, f'state{protocol}.zip.pt', pickle_protocol=protocol)
+    torch.save(state, f'state{protocol}.legacy.pt', pickle_protocol=protocol, _use_new_zipfile_serialization=False)
+)";
+
+TEST(TorchCheckpointFromPyTorch, WithTrainingStateKeepsItByTheNameOfItsClass) {
+  MAREY_NEED_PYTHON("torch");
+  const TempFolder folder;
+  ASSERT_TRUE(test::runPython(folder.path(), std::string(kSave) + kTrainingState))
+      << slurp(folder / "python.log");
+  const std::pair<const char*, const char*> classes[] = {{"args", "argparse.Namespace"},
+                                                         {"path", "pathlib.PurePosixPath"},
+                                                         {"array", "numpy.ndarray"},
+                                                         {"big", "numpy.ndarray"},
+                                                         {"device", "torch.device"},
+                                                         {"dtype", "torch.float32"},
+                                                         {"when", "datetime.datetime"},
+                                                         {"window", "collections.deque"},
+                                                         {"id", "uuid.UUID"},
+                                                         {"optimiser", "torch.optim.sgd.SGD"}};
+  for (const char* file :
+       {"state2.zip.pt", "state4.zip.pt", "state2.legacy.pt", "state4.legacy.pt"}) {
+    SCOPED_TRACE(file);
+    const auto read = readTorchCheckpoint(folder / file);
+    EXPECT_EQ(read.tensors.at("graph/w").toFloats(), (std::vector<float>{0, 1, 2, 3, 4, 5}));
+    for (const auto& [path, name] : classes) {
+      ASSERT_TRUE(read.opaque.contains(path)) << path;
+      EXPECT_EQ(read.opaque.at(path), name);
+    }
+    EXPECT_EQ(read.scalars.at("losses/a"), Json({1.0, 2.0}));
+    EXPECT_EQ(read.scalars.at("counts/a"), 2);
+    EXPECT_EQ(read.scalars.at("keys/torch.float32"), 1);
+    EXPECT_EQ(read.tensors.at("short").toInt64(), (std::vector<int64_t>{-2, 300}));
+    EXPECT_EQ(read.tensors.at("char").toInt64(), (std::vector<int64_t>{-3, 100}));
+    const auto brain = read.tensors.at("brain").toFloats();
+    EXPECT_EQ(brain[0], 1.5f);
+    EXPECT_EQ(brain[1], -0.25f);
+    EXPECT_NEAR(brain[2] / 3e38f, 1.0f, 1.0f / 256.0f);
+    for (const auto& [path, tensor] : read.tensors)
+      EXPECT_FALSE(path.starts_with("optimiser")) << path;
+  }
+}
+
+TEST(TorchCheckpointFromPyTorch, WithAClassOfItsOwnIsRefusedWithWhatToDo) {
+  MAREY_NEED_PYTHON("torch");
+  const TempFolder folder;
+  ASSERT_TRUE(test::runPython(folder.path(), std::string(kSave) + R"(
+import enum
+class Mode(enum.Enum): TRAIN = 1
+torch.save({'graph': {'w': torch.ones(2)}, 'mode': Mode.TRAIN}, 'mode.pt')
+)")) << slurp(folder / "python.log");
+  const auto message = messageOf<InputError>([&] { readTorchCheckpoint(folder / "mode.pt"); });
+  EXPECT_NE(message.find("'__main__.Mode', which is refused"), std::string::npos) << message;
+  EXPECT_NE(message.find("torch.save(model.state_dict()"), std::string::npos) << message;
+}
+
 TEST(TorchCheckpointFromPyTorch, CutAtAnyLengthOrChangedAnywhereNeverCrashes) {
   MAREY_NEED_PYTHON("torch");
   const TempFolder folder;
@@ -158,6 +231,8 @@ torch.save(torch.nn.Linear(2, 2), 'module.pt')
   for (const char* file : {"evil2.zip.pt", "evil4.zip.pt", "evil2.legacy.pt", "evil4.legacy.pt"}) {
     const auto message = messageOf<InputError>([&] { readTorchCheckpoint(folder / file); });
     EXPECT_NE(message.find("'posix.system', which is refused"), std::string::npos) << message;
+    EXPECT_EQ(message.find("state_dict()"), std::string::npos)
+        << "nobody is told to load it: " << message;
   }
   const auto message = messageOf<InputError>([&] { readTorchCheckpoint(folder / "module.pt"); });
   EXPECT_NE(message.find("'torch.nn.modules.linear.Linear'"), std::string::npos) << message;

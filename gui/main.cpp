@@ -3,12 +3,14 @@
 #include <QLoggingCategory>
 #include <QTimer>
 #include <cstdio>
+#include <memory>
 
 #include "panels/commands.h"
 #include "panels/panels.h"
 #include "panels/scene_view.h"
 #include "shell/application.h"
 #include "shell/main_window.h"
+#include "shell/no_display.h"
 #include "shell/start_time.h"
 
 #include "nn/threads.h"
@@ -61,7 +63,9 @@ void answerQuestions(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   SceneView::prepareApplication();
+  auto guard = std::make_unique<NoDisplayGuard>();
   Application application(argc, argv);
+  guard.reset();
   QCommandLineParser parser;
   describe(parser);
   if (!parser.parse(QApplication::arguments())) {

@@ -8,6 +8,6 @@ namespace marey {
 inline constexpr std::array kFuzzNames = {
     "clips",  "positions", "fps",          "joint_names",  "parents",          "offsets",
     "name",   "rotations", "translations", "euler_orders", "end_site_parents", "end_site_offsets",
-    "source", "recipe",    "format", "joints"};
+    "source", "recipe",    "format",       "joints"};
 
 }  // namespace marey

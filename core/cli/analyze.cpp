@@ -18,19 +18,30 @@ struct AnalyzeOptions {
   std::string feet;
   double toleranceStepCmS = 0.0;
   int resamples = 400;
+  std::string controls = "each", natural = "all";
 };
+
+ControlRule controlRule(const std::string& name) {
+  return name == "folder" ? ControlRule::Folder
+         : name == "one"  ? ControlRule::One
+                          : ControlRule::Each;
+}
+
+/// Counts are whole but for shares of several samples per control.
+Json countJson(double count) {
+  return count == std::floor(count) ? Json(static_cast<int64_t>(count)) : Json(count);
+}
 
 Json numberOrNull(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
 Json footstepsJson(const stats::FootstepCurve& curve) {
-  return {{"tolerance_cm_s", curve.toleranceCmS},
-          {"count", curve.count},
-          {"max_count", curve.maxCount},
-          {"v95_cm_s", numberOrNull(curve.v95CmS)},
-          {"duration_mean_s", curve.durationMeanS},
-          {"duration_std_s", curve.durationStdS}};
+  Json counts = Json::array();
+  for (const double count : curve.count) counts.push_back(countJson(count));
+  return {{"tolerance_cm_s", curve.toleranceCmS},   {"count", counts},
+          {"max_count", countJson(curve.maxCount)}, {"v95_cm_s", numberOrNull(curve.v95CmS)},
+          {"duration_mean_s", curve.durationMeanS}, {"duration_std_s", curve.durationStdS}};
 }
 
 Json statisticJson(const stats::StatisticResult& r, bool compared) {
@@ -45,6 +56,9 @@ Json statisticJson(const stats::StatisticResult& r, bool compared) {
     out["natural_high"] = numberOrNull(r.naturalHigh);
     out["noise_floor"] = numberOrNull(r.noiseFloor);
   }
+  out["clips"] = r.clips;
+  out["controls"] = r.controls;
+  out["left_out"] = r.leftOut;
   out["definition"] = r.definition;
   out["source"] = r.source;
   return out;
@@ -70,6 +84,8 @@ std::string statisticsText(const std::vector<stats::StatisticResult>& results, b
     if (compared)
       text += fmt::format(" {:>9}  {:<20} {:>9}", cell(r.natural),
                           range(r.naturalLow, r.naturalHigh), cell(r.noiseFloor));
+    if (r.leftOut > 0)
+      text += fmt::format("  ({} of {} clips left out)", r.leftOut, r.clips + r.leftOut);
     text += "\n";
   }
   return text;
@@ -78,12 +94,13 @@ std::string statisticsText(const std::vector<stats::StatisticResult>& results, b
 std::string headText(const ClipStatistics& found) {
   std::string text = fmt::format("{} clips, {:.1f} s at {} frames per second\n", found.clips,
                                  found.seconds, found.fps);
+  if (found.compared) text += "compared with " + found.comparedWith + "\n";
   if (!found.footsteps) return text + "no feet: choose them with --feet to count footsteps\n\n";
   std::string names;
   for (int foot : found.feet) names += (names.empty() ? "" : ", ") + found.skeleton->names[foot];
   const stats::FootstepCurve& curve = *found.footsteps;
-  text += fmt::format("footsteps of {}: {} at most", names, curve.maxCount);
-  if (curve.maxCount > 0)
+  text += fmt::format("footsteps of {}: {:g} at most", names, curve.maxCount);
+  if (curve.maxCount > 0.0)
     text += fmt::format(", 95 % of them at {:.3g} cm/s, lasting {:.2f} +- {:.2f} s", curve.v95CmS,
                         curve.durationMeanS, curve.durationStdS);
   return text + "\n\n";
@@ -93,6 +110,8 @@ void runAnalyze(const Context& context, const AnalyzeOptions& options) {
   Progress progress = context.progress("analyzing");
   ClipStatisticsRequest request{.clips = {expandInputs(options.inputs), options.read, options.fps},
                                 .natural = {{}, options.read, 0.0},
+                                .controls = controlRule(options.controls),
+                                .against = naturalChoiceByName(options.natural),
                                 .feet = options.feet,
                                 .footStepCmS = options.toleranceStepCmS,
                                 .options = {.resamples = options.resamples, .seed = context.seed}};
@@ -100,6 +119,7 @@ void runAnalyze(const Context& context, const AnalyzeOptions& options) {
   const ClipStatistics found = clipStatistics(request, *context.ranks, progress);
   if (!context.ranks->first()) return;
   Json result = {{"clips", found.clips}, {"seconds", found.seconds}, {"fps", found.fps}};
+  if (found.compared) result["compared_with"] = found.comparedWith;
   if (found.footsteps) result["footsteps"] = footstepsJson(*found.footsteps);
   result["bone_length_rmse_cm"] = nullptr;
   Json list = Json::array();
@@ -122,6 +142,19 @@ void addAnalyzeCommand(CLI::App& app, Context& context) {
   command->add_option("inputs", options->inputs, "motion files, folders or @LIST")->required();
   command->add_option("--against", options->against,
                       "natural motion to compare with: files, folders or @LIST");
+  command
+      ->add_option(
+          "--natural", options->natural,
+          "which of them: all, same-control (of the same file name as a clip, drawn with it "
+          "as a pair) or same-style (of the same name but for its number)")
+      ->check(CLI::IsMember({"all", "same-control", "same-style"}))
+      ->capture_default_str();
+  command
+      ->add_option("--controls", options->controls,
+                   "which clips follow one control and are one cluster: each (none), folder (those "
+                   "of one folder) or one (all)")
+      ->check(CLI::IsMember({"each", "folder", "one"}))
+      ->capture_default_str();
   command
       ->add_option("--fps", options->fps,
                    "frame rate of the analysis (default: that of the first clip)")

@@ -12,6 +12,7 @@
 #include "experiment/path_choice.h"
 #include "experiment/recipe.h"
 #include "experiment/sample_files.h"
+#include "model/training_pace.h"
 
 namespace marey::cli {
 namespace {
@@ -65,6 +66,10 @@ void run(Options& o, Context& context) {
                            .recipe = recipe(o, *model, context),
                            .writers = context.threads > 0 ? context.threads : coresOfThisProcess(),
                            .resume = o.resume};
+  const double fps = model->info().features.fps;
+  const std::string warning = standingWarning(
+      o.model, trainingPaceOf(model->info().provenance, o.model), request.path, fps);
+  if (!warning.empty() && context.ranks->first()) fmt::print(stderr, "marey: {}\n", warning);
   Progress progress = context.progress("sample");
   const auto begin = std::chrono::steady_clock::now();
   const SampleFiles written = writeSampleFiles(
@@ -78,17 +83,16 @@ void run(Options& o, Context& context) {
   fits.add(written.fit);
   const double frames =
       static_cast<double>(written.sampled) * static_cast<double>(request.path.size());
-  Json result = {
-      {"clips", written.clips},
-      {"frames_per_s", frames / seconds},
-      {"peak_memory_mb", peakMemoryMb()},
-      {"seconds_each", static_cast<double>(request.path.size()) / model->info().features.fps}};
+  Json result = {{"clips", written.clips},
+                 {"frames_per_s", frames / seconds},
+                 {"peak_memory_mb", peakMemoryMb()},
+                 {"seconds_each", static_cast<double>(request.path.size()) / fps}};
+  result["warnings"] = warning.empty() ? Json::array() : Json::array({warning});
   fits.addTo(result);
   fits.tell(context);
-  context.print(result,
-                fmt::format("{} motions of {:.1f} s in {} ({:.0f} frames/s)", o.samples,
-                            static_cast<double>(request.path.size()) / model->info().features.fps,
-                            o.out, frames / seconds));
+  context.print(
+      result, fmt::format("{} motions of {:.1f} s in {} ({:.0f} frames/s)", o.samples,
+                          static_cast<double>(request.path.size()) / fps, o.out, frames / seconds));
 }
 
 }  // namespace

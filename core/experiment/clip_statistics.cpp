@@ -146,6 +146,63 @@ stats::StatisticSet partsOf(ClipReader& reader, const Overview& overview,
   return out;
 }
 
+std::vector<std::string> stems(const std::vector<std::filesystem::path>& files) {
+  std::vector<std::string> out;
+  for (const auto& file : files) out.push_back(file.stem().string());
+  return out;
+}
+
+/// For every file of clips the natural file that its clips are compared with or share a style with;
+/// -1: none.
+std::vector<int> followedFiles(const ClipStatisticsRequest& request) {
+  const auto natural = stems(request.natural.files);
+  const bool byStyle = request.against == NaturalChoice::SameStyle;
+  std::vector<int> out;
+  for (const std::string& name : stems(request.clips.files)) {
+    const auto at = std::find_if(natural.begin(), natural.end(), [&](const std::string& other) {
+      return byStyle ? styleOf(other) == styleOf(name) : other == name;
+    });
+    out.push_back(at == natural.end() ? -1 : static_cast<int>(at - natural.begin()));
+  }
+  return out;
+}
+
+/// The number of every clip's control, by the file that it is in.
+std::vector<int> controlsByFile(const Overview& overview, size_t files,
+                                const std::function<int(size_t file, size_t clip)>& number) {
+  std::vector<int> out;
+  for (size_t file = 0; file < files; ++file) {
+    const size_t end = file + 1 < files ? overview.clipsBefore[file + 1] : overview.facts.clips;
+    for (size_t clip = overview.clipsBefore[file]; clip < end; ++clip)
+      out.push_back(number(file, clip));
+  }
+  return out;
+}
+
+/// Controls of both sides. Files of one name share theirs where the same control is compared; other
+/// natural clips have one each.
+void setControls(const ClipStatisticsRequest& request, const Overview& overview,
+                 const Overview& natural, const std::vector<std::filesystem::path>& naturalFiles,
+                 stats::StatisticSetting& setting) {
+  std::map<std::filesystem::path, int> folders;
+  std::map<std::string, int> names;
+  setting.controls =
+      controlsByFile(overview, request.clips.files.size(), [&](size_t file, size_t clip) {
+        const auto& path = request.clips.files[file];
+        if (request.against == NaturalChoice::SameControl)
+          return names.emplace(path.stem().string(), static_cast<int>(names.size())).first->second;
+        if (request.controls == ControlRule::One) return 0;
+        if (request.controls == ControlRule::Each) return static_cast<int>(clip);
+        return folders.emplace(path.parent_path(), static_cast<int>(folders.size())).first->second;
+      });
+  const int first = 1 + *std::max_element(setting.controls.begin(), setting.controls.end());
+  setting.naturalControls =
+      controlsByFile(natural, naturalFiles.size(), [&](size_t file, size_t clip) {
+        const auto shared = names.find(naturalFiles[file].stem().string());
+        return shared != names.end() ? shared->second : first + static_cast<int>(clip);
+      });
+}
+
 Clip firstClip(const ClipFiles& clips) {
   std::vector<Clip> found = io::readClips(clips.files.front(), clips.read);
   if (found.empty())
@@ -165,9 +222,17 @@ ClipStatistics clipStatistics(const ClipStatisticsRequest& request, Ranks& ranks
                               Progress& progress) {
   const Clip first = firstClip(request.clips);
   ClipReader reader(request.clips, first.fps, first);
-  ClipReader naturalReader(request.natural, first.fps, first);
   ClipStatistics out{.skeleton = first.skeleton, .fps = first.fps};
   out.compared = !request.natural.files.empty();
+  ClipFiles naturalFiles = request.natural;
+  if (out.compared) {
+    const auto chosen =
+        naturalToCompare(stems(request.natural.files), followedFiles(request), request.against);
+    naturalFiles.files.clear();
+    for (const size_t i : chosen.clips) naturalFiles.files.push_back(request.natural.files[i]);
+    out.comparedWith = chosen.text;
+  }
+  ClipReader naturalReader(naturalFiles, first.fps, first);
   out.feet = request.feet.empty() ? rolesOf(*first.skeleton).feet
                                   : jointsByName(*first.skeleton, request.feet);
   Progress reading = progress.part(0.0, 0.3), naturalReading = progress.part(0.3, 0.4),
@@ -179,9 +244,11 @@ ClipStatistics clipStatistics(const ClipStatisticsRequest& request, Ranks& ranks
   stats::StatisticSetting setting{
       .skeleton = first.skeleton,
       .feet = out.feet,
+      .toes = request.feet.empty() ? std::vector<int>() : out.feet,
       .footStepCmS = toleranceStep(*first.skeleton, request.footStepCmS),
       .own = overview.facts,
       .natural = out.compared ? &naturalOverview.facts : nullptr};
+  setControls(request, overview, naturalOverview, naturalFiles.files, setting);
   setting.completeReferences();
   const auto set = partsOf(reader, overview, setting, ranks, parting);
   std::optional<stats::StatisticSet> natural;
@@ -193,9 +260,10 @@ ClipStatistics clipStatistics(const ClipStatisticsRequest& request, Ranks& ranks
   if (!out.feet.empty()) {
     const auto rules = stats::rulesOf(stats::allStatistics());
     const auto at = std::find(rules.begin(), rules.end(), stats::footstepRule()) - rules.begin();
-    out.footsteps = curveOf(
-        stats::footstepTolerances({.feet = out.feet, .stepCmS = setting.footStepCmS}),
-        stats::footstepTallies(set.parts[static_cast<size_t>(at)]), std::vector<int>(out.clips, 1));
+    out.footsteps =
+        curveOf(stats::footstepTolerances({.feet = out.feet, .stepCmS = setting.footStepCmS}),
+                stats::footstepTallies(set.parts[static_cast<size_t>(at)]),
+                stats::ControlSets(setting.controls, {}).once().clips);
   }
   out.results = stats::evaluate(stats::allStatistics(), set, natural ? &*natural : nullptr,
                                 request.options, combining);

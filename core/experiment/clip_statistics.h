@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/ranks.h"
+#include "experiment/comparison.h"
 #include "io/format.h"
 #include "stats/statistic.h"
 
@@ -18,8 +19,15 @@ struct ClipFiles {
   double fps = 0.0;  ///< clips are resampled to it; 0: the rate of the first one
 };
 
+/// Which clips follow one control: each its own, those of one folder the same, or all the same.
+enum class ControlRule { Each, Folder, One };
+
 struct ClipStatisticsRequest {
   ClipFiles clips, natural;  ///< natural.files empty: none
+  ControlRule controls = ControlRule::Each;
+  /// Of the natural files, by their names: those of SameControl have the name of a clip's file, and
+  /// are drawn with it as a pair; those of SameStyle have its style (comparison.h).
+  NaturalChoice against = NaturalChoice::All;
   std::string feet;          ///< names of joints, "A,B"; empty: found by their names
   double footStepCmS = 0.0;  ///< 0: 1.0, of quadrupeds 0.3
   stats::EvaluationOptions options;
@@ -30,6 +38,7 @@ struct ClipStatistics {
   double fps = 0.0, seconds = 0.0;
   size_t clips = 0;
   bool compared = false;
+  std::string comparedWith;  ///< "all 101 natural clips"; by file
   std::vector<int> feet;
   std::optional<stats::FootstepCurve> footsteps;  ///< none without feet
   std::vector<stats::StatisticResult> results;

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "base/hash.h"
+#include "experiment/comparison.h"
 
 namespace marey {
 namespace {
@@ -69,6 +70,16 @@ std::vector<T> namedList(JsonReader& reader, const std::string& key,
   return out;
 }
 
+std::string againstFrom(JsonReader& reader, const std::string& fallback) {
+  const auto name = reader.optional("against", fallback);
+  try {
+    naturalChoiceByName(name);
+  } catch (const UsageError&) {
+    throw InputError(reader.place("against"), "all, same-control or same-style", "'" + name + "'");
+  }
+  return name;
+}
+
 }  // namespace
 
 Experiment experimentFromJson(const Json& value, const std::string& origin) {
@@ -85,6 +96,7 @@ Experiment experimentFromJson(const Json& value, const std::string& origin) {
   out.fps = reader.optional("fps", out.fps);
   out.feet = reader.optional("feet", out.feet);
   out.toleranceStepCmS = reader.optional("tolerance_step_cm_s", out.toleranceStepCmS);
+  out.against = againstFrom(reader, out.against);
   reader.finish();
   requireAtLeast(reader, "samples", out.samples, 1);
   requireAtLeast(reader, "held_out_samples", out.heldOutSamples, 0);
@@ -113,17 +125,19 @@ Json toJson(const Experiment& e) {
     if (p.startFromClip) one["start"] = "clip";
     paths.push_back(one);
   }
-  return {{"title", e.title},
-          {"notes", e.notes},
-          {"natural", e.natural},
-          {"systems", systems},
-          {"paths", paths},
-          {"samples", e.samples},
-          {"held_out_samples", e.heldOutSamples},
-          {"seed", e.seed},
-          {"fps", e.fps},
-          {"feet", e.feet},
-          {"tolerance_step_cm_s", e.toleranceStepCmS}};
+  Json out = {{"title", e.title},
+              {"notes", e.notes},
+              {"natural", e.natural},
+              {"systems", systems},
+              {"paths", paths},
+              {"samples", e.samples},
+              {"held_out_samples", e.heldOutSamples},
+              {"seed", e.seed},
+              {"fps", e.fps},
+              {"feet", e.feet},
+              {"tolerance_step_cm_s", e.toleranceStepCmS}};
+  if (e.against != Experiment().against) out["against"] = e.against;
+  return out;
 }
 
 void writeExperiment(const std::filesystem::path& path, const Experiment& experiment) {

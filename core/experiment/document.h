@@ -47,6 +47,9 @@ struct Experiment {
   double fps = 20.0;
   std::string feet;  ///< joint names; empty: found by name
   double toleranceStepCmS = 1.0;
+  /// Natural motion that samples along held-out control are compared with: "all", "same-control" or
+  /// "same-style" (comparison.h).
+  std::string against = "all";
   std::filesystem::path folder;  ///< of the document: relative names start there (not stored)
   bool operator==(const Experiment&) const = default;
 };

@@ -42,19 +42,41 @@ TrainingPace trainingPace(const std::vector<FeatureSequence>& sequences, double 
       speeds.push_back(std::hypot(sequence.control(t, 0), sequence.control(t, 1)) * fps);
       turns.push_back(sequence.control(t, 2) * fps);
     }
-  return {quantilesOf(std::move(speeds)), quantilesOf(std::move(turns))};
+  const auto standing =
+      std::count_if(speeds.begin(), speeds.end(), [](double speed) { return speed < kStandingMS; });
+  const double share = static_cast<double>(standing) / static_cast<double>(speeds.size());
+  return {quantilesOf(std::move(speeds)), quantilesOf(std::move(turns)), share};
+}
+
+std::string standingWarning(const std::string& model, const std::optional<TrainingPace>& pace,
+                            const std::vector<RootFrame>& path, double fps) {
+  const double seconds = standingSeconds(path, fps);
+  if (seconds <= 0.0 || !pace || !pace->lacksStanding()) return {};
+  return fmt::format(
+      "the path stands still for {:.1f} s, but {} was trained on motion of which {:.1f} % of "
+      "frames "
+      "stand (slower than {:g} cm/s): it has hardly seen a body at rest",
+      seconds, model, 100.0 * *pace->standingShare, 100.0 * kStandingMS);
 }
 
 Json toJson(const TrainingPace& pace) {
-  return {{"quantiles", {0.005, 0.05, 0.95, 0.995}},
-          {"speed_m_s", toJson(pace.speedMS)},
-          {"turn_rad_s", toJson(pace.turnRadS)}};
+  Json out = {{"quantiles", {0.005, 0.05, 0.95, 0.995}},
+              {"speed_m_s", toJson(pace.speedMS)},
+              {"turn_rad_s", toJson(pace.turnRadS)}};
+  if (pace.standingShare) out["standing_share"] = *pace.standingShare;
+  return out;
 }
 
 std::optional<TrainingPace> trainingPaceOf(const Json& provenance, const std::string& origin) {
   if (!provenance.is_object() || !provenance.contains(kKey)) return std::nullopt;
   JsonReader reader(provenance.at(kKey), origin, std::string(kKey) + ".");
-  return TrainingPace{quantilesFrom(reader, "speed_m_s"), quantilesFrom(reader, "turn_rad_s")};
+  TrainingPace out{quantilesFrom(reader, "speed_m_s"), quantilesFrom(reader, "turn_rad_s")};
+  if (reader.has("standing_share")) {
+    out.standingShare = reader.required<double>("standing_share");
+    if (!(*out.standingShare >= 0.0 && *out.standingShare <= 1.0))
+      throwInput(reader.place("standing_share"), "a share from 0 to 1", "{}", *out.standingShare);
+  }
+  return out;
 }
 
 std::optional<TrainingPace> readTrainingPace(const std::filesystem::path& model) {

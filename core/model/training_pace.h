@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/json.h"
 #include "motion/features.h"
+#include "motion/standing.h"
 
 namespace marey {
 
@@ -20,12 +22,23 @@ struct PaceQuantiles {
 struct TrainingPace {
   PaceQuantiles speedMS;   ///< of the root over the floor
   PaceQuantiles turnRadS;  ///< above 0: to the left
+  /// Share of frames slower than kStandingMS; none in models that were stored without it.
+  std::optional<double> standingShare = std::nullopt;
+
+  /// Whether it is known that hardly a frame in a thousand stands: a path that does asks for
+  /// something that was never seen.
+  bool lacksStanding() const { return standingShare && *standingShare < 1e-3; }
   bool operator==(const TrainingPace&) const = default;
 };
 
 /// Of the control of sequences, augmented ones included: a model learns those as well.
 /// Throws NumericError where there is no frame.
 TrainingPace trainingPace(const std::vector<FeatureSequence>& sequences, double fps);
+
+/// What to say where a path stands still and the model is known to have seen no standing: a
+/// sentence that names it; "" where there is nothing to say.
+std::string standingWarning(const std::string& model, const std::optional<TrainingPace>& pace,
+                            const std::vector<RootFrame>& path, double fps);
 
 Json toJson(const TrainingPace& pace);
 /// Out of a model's provenance; none in models that were stored without it. Throws InputError

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "experiment/comparison.h"
 #include "experiment/recipe.h"
 #include "stats/footsteps.h"
 #include "stats/joint_samples.h"
@@ -90,18 +91,20 @@ void addLikelihoods(const ExperimentResult& r, ReportData& out) {
   }
 }
 
-FootstepSeries seriesOf(int system, const std::vector<Clip>& clips, const ExperimentResult& r) {
-  const auto curve =
-      stats::footstepCurve(clips, {.feet = r.feet, .stepCmS = r.experiment.toleranceStepCmS});
-  return {system, curve.toleranceCmS, {curve.count.begin(), curve.count.end()}, curve.v95CmS};
+FootstepSeries seriesOf(int system, const std::vector<Clip>& clips,
+                        const std::vector<int>& controls, const ExperimentResult& r) {
+  auto curve = stats::footstepCurve(
+      clips, {.feet = r.feet, .stepCmS = r.experiment.toleranceStepCmS}, controls);
+  return {system, std::move(curve.toleranceCmS), std::move(curve.count), curve.v95CmS};
 }
 
 void addFootsteps(const ExperimentResult& r, ReportData& out) {
   FootstepPanel panel{.title = "Footsteps on held-out control"};
-  panel.curves.push_back(seriesOf(0, r.natural, r));
+  panel.curves.push_back(seriesOf(0, r.natural, {}, r));
   for (size_t i = 0; i < r.systems.size(); ++i)
     if (!r.systems[i].heldOut.empty())
-      panel.curves.push_back(seriesOf(static_cast<int>(i + 1), r.systems[i].heldOut, r));
+      panel.curves.push_back(seriesOf(static_cast<int>(i + 1), r.systems[i].heldOut,
+                                      heldOutControls(r.systems[i], r.experiment), r));
   out.footsteps.push_back(std::move(panel));
 }
 

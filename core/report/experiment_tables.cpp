@@ -2,9 +2,11 @@
 #include <cctype>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include <fmt/format.h>
 
+#include "experiment/comparison.h"
 #include "report/experiment_report.h"
 #include "stats/bones.h"
 #include "stats/footsteps.h"
@@ -15,40 +17,34 @@ namespace {
 
 constexpr int kResamples = 200;
 
-double boneRmse(const std::vector<Clip>& clips, const ExperimentResult& r) {
-  stats::StatisticInput input{.clips = &clips,
-                              .natural = &r.natural,
-                              .feet = r.feet,
-                              .footStepCmS = r.experiment.toleranceStepCmS};
-  return stats::valueOf(stats::statisticByName("bone_length_rmse"), input);
+/// Clips of a set and what they follow, ready for statistics.
+stats::StatisticInput inputOf(const std::vector<Clip>& clips, const std::vector<int>& controls,
+                              const ExperimentResult& r) {
+  return {.clips = &clips,
+          .natural = &r.natural,
+          .controls = controls,
+          .naturalControls = stats::controlsEach(r.natural.size()),
+          .feet = r.feet,
+          .toes = r.experiment.feet.empty() ? std::vector<int>() : r.feet,
+          .footStepCmS = r.experiment.toleranceStepCmS};
 }
 
 std::vector<Cell> footstepRow(const std::string& name, const std::vector<Clip>& clips,
-                              const ExperimentResult& r, bool natural) {
-  const auto curve =
-      stats::footstepCurve(clips, {.feet = r.feet, .stepCmS = r.experiment.toleranceStepCmS});
+                              const std::vector<int>& controls, const ExperimentResult& r) {
+  const auto curve = stats::footstepCurve(
+      clips, {.feet = r.feet, .stepCmS = r.experiment.toleranceStepCmS}, controls);
+  const std::set<int> different(controls.begin(), controls.end());
+  const stats::StatisticInput input = inputOf(clips, controls, r);
+  // A share of a step is left where controls have several samples.
   return {{name},
-          numberCell(static_cast<double>(curve.maxCount), 0),
+          numberCell(static_cast<double>(clips.size()), 0),
+          numberCell(static_cast<double>(different.size()), 0),
+          numberCell(curve.maxCount, different.size() == clips.size() ? 0 : 1),
           numberCell(curve.v95CmS, 1),
+          numberCell(curve.stepsPerS, 3),
           numberCell(curve.durationMeanS, 2),
           numberCell(curve.durationStdS, 2),
-          natural ? Cell{"-"} : numberCell(boneRmse(clips, r), 2)};
-}
-
-/// Quantile of floor speeds of the feet, cm/s.
-double footSpeedQuantile(const std::vector<ClipPtr>& clips, const std::vector<int>& feet,
-                         double share) {
-  std::vector<double> speeds;
-  for (const auto& clip : clips)
-    for (const int foot : feet) {
-      const auto own = stats::horizontalSpeedsCmS(*clip, foot);
-      speeds.insert(speeds.end(), own.begin(), own.end());
-    }
-  if (speeds.empty()) return std::nan("");
-  const auto at =
-      speeds.begin() + static_cast<long>(share * static_cast<double>(speeds.size() - 1));
-  std::nth_element(speeds.begin(), at, speeds.end());
-  return *at;
+          numberCell(stats::valueOf(stats::statisticByName("bone_length_rmse"), input), 3)};
 }
 
 double meanNats(const std::vector<ClipScore>& scores) {
@@ -76,19 +72,39 @@ Cell optionalCell(std::optional<double> value) {
   return {fmt::format("{:.4g}", *value), *value};
 }
 
+std::string statisticCaption(const SystemResult& system, const ComparedNatural& compared,
+                             const ExperimentResult& r) {
+  std::string out = fmt::format(
+      "{} motions along held-out control, compared with {}. The unit of resampling is the control: "
+      "samples along one control are one cluster. Intervals: 95 % bootstrap over controls; those "
+      "of "
+      "distances are corrected for bias and resample the natural side as well. Noise floor: "
+      "natural "
+      "against natural, two sets of as many controls as are compared; a difference below it says "
+      "nothing. For distances (0 is the same) the natural column is that distance.",
+      system.heldOut.size(), compared.text);
+  if (r.experiment.heldOutSamples < 2)
+    out += " Diversity needs two samples or more along a control (held_out_samples).";
+  return out;
+}
+
 Table statisticTable(const ExperimentResult& r, const SystemResult& system, Progress& progress) {
-  const stats::StatisticInput input{.clips = &system.heldOut,
-                                    .natural = &r.natural,
-                                    .wanted = &system.heldOutPaths,
-                                    .feet = r.feet,
-                                    .footStepCmS = r.experiment.toleranceStepCmS};
+  const std::vector<int> follows = heldOutControls(system, r.experiment);
+  const auto compared =
+      naturalToCompare(r.natural, follows, naturalChoiceByName(r.experiment.against));
+  std::vector<Clip> natural;
+  std::vector<int> naturalControls;
+  for (const size_t i : compared.clips) {
+    natural.push_back(r.natural[i]);
+    naturalControls.push_back(static_cast<int>(i));
+  }
+  stats::StatisticInput input = inputOf(system.heldOut, follows, r);
+  input.natural = &natural;
+  input.naturalControls = naturalControls;
+  input.wanted = &system.heldOutPaths;
   Table out{.id = "statistics-" + tableId(system.name),
             .title = "Statistics of " + system.name + " beside natural motion",
-            .caption =
-                "Held-out control. Intervals: 95 % bootstrap over clips. Noise floor: natural "
-                "against natural, random halves; "
-                "a difference below it says nothing. For distances (0 is the same) the natural "
-                "column is the distance between halves.",
+            .caption = statisticCaption(system, compared, r),
             .section = Section::Statistics,
             .columns = {{"statistic"},
                         {"unit"},
@@ -96,7 +112,9 @@ Table statisticTable(const ExperimentResult& r, const SystemResult& system, Prog
                         {"95 % interval"},
                         {"natural"},
                         {"natural 95 %"},
-                        {"noise floor"}}};
+                        {"noise floor"},
+                        {"clips"},
+                        {"left out"}}};
   for (const auto& s :
        stats::evaluate(stats::allStatistics(), input,
                        {.resamples = kResamples, .seed = r.experiment.seed}, progress))
@@ -106,30 +124,37 @@ Table statisticTable(const ExperimentResult& r, const SystemResult& system, Prog
                         {interval(s.low, s.high)},
                         optionalCell(s.natural),
                         {interval(s.naturalLow, s.naturalHigh)},
-                        optionalCell(s.noiseFloor)});
+                        optionalCell(s.noiseFloor),
+                        numberCell(static_cast<double>(s.clips), 0),
+                        numberCell(static_cast<double>(s.leftOut), 0)});
   return out;
 }
 
 }  // namespace
 
 Table footstepTable(const ExperimentResult& r) {
-  Table out{.id = "footsteps",
-            .title = "Footsteps and bones (the papers' Table 3)",
-            .caption =
-                "Held-out control. f: most footsteps at any speed tolerance; v95: the tolerance "
-                "that reaches 95 % of them; "
-                "duration at v95; bone RMSE against the natural mean lengths (Henter et al. 2020, "
-                "Sec. 5.3).",
-            .section = Section::Summary,
-            .columns = {{"system"},
-                        {"f"},
-                        {"v95", "cm/s"},
-                        {"duration mean", "s"},
-                        {"duration sd", "s"},
-                        {"bone RMSE", "cm"}}};
-  out.rows.push_back(footstepRow("natural", r.natural, r, true));
+  Table out{
+      .id = "footsteps",
+      .title = "Footsteps and bones (the papers' Table 3)",
+      .caption =
+          "Held-out control. f: most footsteps at any speed tolerance, per control (the mean "
+          "over the motions along each, summed over controls); v95: the tolerance that "
+          "reaches 95 % of them; rate and duration at v95; bone RMSE against the natural mean "
+          "lengths (Henter et al. 2020, Sec. 5.3).",
+      .section = Section::Summary,
+      .columns = {{"system"},
+                  {"motions"},
+                  {"controls"},
+                  {"f"},
+                  {"v95", "cm/s"},
+                  {"rate", "1/s"},
+                  {"duration mean", "s"},
+                  {"duration sd", "s"},
+                  {"bone RMSE", "cm"}}};
+  out.rows.push_back(footstepRow("natural", r.natural, stats::controlsEach(r.natural.size()), r));
   for (const auto& s : r.systems)
-    if (!s.heldOut.empty()) out.rows.push_back(footstepRow(s.name, s.heldOut, r, false));
+    if (!s.heldOut.empty())
+      out.rows.push_back(footstepRow(s.name, s.heldOut, heldOutControls(s, r.experiment), r));
   return out;
 }
 
@@ -158,38 +183,6 @@ Table likelihoodTable(const ExperimentResult& r) {
                         numberCell(static_cast<double>(s.info.parameters) / 1e6, 2),
                         numberCell(s.framesPerSecond, 0)});
   }
-  return out;
-}
-
-Table obedienceTable(const ExperimentResult& r) {
-  Table out{.id = "paths",
-            .title = "Feet along each path",
-            .caption =
-                "Floor speed of the feet over all samples: where the path stands still, feet "
-                "should rest.",
-            .section = Section::Footsteps,
-            .columns = {{"path"},
-                        {"system"},
-                        {"median foot speed", "cm/s"},
-                        {"95 % foot speed", "cm/s"},
-                        {"footsteps per second"}}};
-  for (const auto& path : r.experiment.paths)
-    for (const auto& s : r.systems) {
-      const auto& samples = s.paths.at(path.name);
-      std::vector<Clip> clips;
-      double seconds = 0.0;
-      for (const auto& clip : samples.clips) {
-        clips.push_back(*clip);
-        seconds += clip->seconds();
-      }
-      const auto curve =
-          stats::footstepCurve(clips, {.feet = r.feet, .stepCmS = r.experiment.toleranceStepCmS});
-      out.rows.push_back({{path.name},
-                          {s.name},
-                          numberCell(footSpeedQuantile(samples.clips, r.feet, 0.5), 1),
-                          numberCell(footSpeedQuantile(samples.clips, r.feet, 0.95), 1),
-                          numberCell(static_cast<double>(curve.maxCount) / seconds, 2)});
-    }
   return out;
 }
 

@@ -4,26 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
-#include "motion/features.h"
-#include "stats/bones.h"
-
 namespace marey::stats {
-namespace {
-
-double poseDistance(const Matrix& a, const Matrix& b, int maxFrames) {
-  const auto frames = std::min(a.rows(), b.rows());
-  const auto compared = std::min<Eigen::Index>(frames, maxFrames);
-  const double joints = static_cast<double>(a.cols()) / 3.0;
-  double sum = 0.0;
-  for (Eigen::Index k = 0; k < compared; ++k) {
-    const Eigen::Index t = compared > 1 ? k * (frames - 1) / (compared - 1) : 0;
-    sum += std::sqrt(static_cast<double>((a.row(t) - b.row(t)).squaredNorm()) / joints);
-  }
-  return compared > 0 ? sum / static_cast<double>(compared) : 0.0;
-}
-
-}  // namespace
 
 Matrix rootFramePoses(const Clip& clip) {
   FeatureSpec spec;
@@ -40,39 +21,44 @@ std::vector<int> spreadIndices(int count, int limit) {
   return out;
 }
 
-std::vector<double> pairDistances(const std::vector<Clip>& clips, int maxFrames) {
-  requireSameJoints(clips);
-  std::vector<Matrix> poses;
-  poses.reserve(clips.size());
-  for (const Clip& clip : clips) {
-    if (clip.fps != clips.front().fps)
-      throwInput({.path = clip.name}, fmt::format("{} fps as the other clips", clips.front().fps),
-                 "{}", clip.fps);
-    poses.push_back(rootFramePoses(clip));
-  }
-  return pairDistances(poses, maxFrames);
+double poseDistance(const Matrix& a, const Matrix& b, Eigen::Index t) {
+  const double joints = static_cast<double>(a.cols()) / 3.0;
+  return std::sqrt(static_cast<double>((a.row(t) - b.row(t)).squaredNorm()) / joints);
 }
 
-std::vector<double> pairDistances(const std::vector<Matrix>& poses, int maxFrames) {
-  const size_t n = poses.size();
-  std::vector<double> out(n * n, 0.0);
-  for (size_t i = 0; i < n; ++i)
-    for (size_t j = i + 1; j < n; ++j)
-      out[i * n + j] = out[j * n + i] = poseDistance(poses[i], poses[j], maxFrames);
-  return out;
+double PairCurve::meanM(size_t frame) const {
+  return meanM(frame, frame + 1);
 }
 
-double meanPairDistance(const std::vector<double>& distances, const std::vector<int>& weights) {
-  const size_t n = weights.size();
+double PairCurve::meanM(size_t first, size_t last) const {
   double sum = 0.0;
-  double pairs = 0.0;
-  for (size_t i = 0; i < n; ++i)
-    for (size_t j = i + 1; j < n; ++j) {
-      const double weight = static_cast<double>(weights[i]) * weights[j];
-      sum += weight * distances[i * n + j];
-      pairs += weight;
-    }
-  return pairs > 0.0 ? sum / pairs : std::numeric_limits<double>::quiet_NaN();
+  double count = 0.0;
+  for (size_t t = first; t < std::min(last, pairs.size()); ++t) {
+    sum += sumM[t];
+    count += pairs[t];
+  }
+  return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+PairCurve pairCurve(const std::vector<Matrix>& poses) {
+  PairCurve out;
+  std::vector<Eigen::Index> lengths;
+  for (const Matrix& pose : poses) lengths.push_back(pose.rows());
+  std::sort(lengths.rbegin(), lengths.rend());
+  const auto frames = static_cast<size_t>(lengths.size() > 1 ? lengths[1] : 0);
+  out.sumM.assign(frames, 0.0);
+  out.pairs.assign(frames, 0.0);
+  out.motions.assign(frames, 0);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const auto own = std::min(frames, static_cast<size_t>(poses[i].rows()));
+    for (size_t t = 0; t < own; ++t) ++out.motions[t];
+    for (size_t j = i + 1; j < poses.size(); ++j)
+      for (size_t t = 0; t < std::min(own, static_cast<size_t>(poses[j].rows())); ++t) {
+        out.sumM[t] += poseDistance(poses[i], poses[j], static_cast<Eigen::Index>(t));
+        out.pairs[t] += 1.0;
+      }
+  }
+  return out;
 }
 
 }  // namespace marey::stats

@@ -1,4 +1,5 @@
-// How different the motions of a set are from each other.
+// How different the motions along one control are from each other. Motions along different controls
+// differ because their paths do: their distances say nothing of a model.
 #pragma once
 
 #include <vector>
@@ -8,22 +9,30 @@
 
 namespace marey::stats {
 
-/// Distances between all pairs of clips: entry (i, j) is the mean over common frames (equal time
-/// from the start) of the root mean square joint distance in the root frame, metres. Row-major,
-/// clips x clips, zero on the diagonal. At most `maxFrames` frames, evenly spread, are compared.
-/// Throws InputError on clips of different joints or rates, or without left and right hip.
-std::vector<double> pairDistances(const std::vector<Clip>& clips, int maxFrames = 100);
+/// Motions along one control that pairs are made of: of more, these many, spread evenly.
+inline constexpr int kDiversityMotions = 48;
 
-/// The same of root-frame poses, [frame, 3 joints], as rootFramePoses gives them.
-std::vector<double> pairDistances(const std::vector<Matrix>& poses, int maxFrames = 100);
 /// Throws InputError on a clip without left and right hip.
 Matrix rootFramePoses(const Clip& clip);
 
-/// Mean of the pair distances with clip i counted weights[i] times (a clip and its own copy are no
-/// pair), metres; NaN where there is no pair.
-double meanPairDistance(const std::vector<double>& distances, const std::vector<int>& weights);
+/// Distance of two poses in the root frame at frame t: the root mean square over joints, metres.
+double poseDistance(const Matrix& a, const Matrix& b, Eigen::Index t);
 
-/// Clips that pairs are made of where there are too many: every k-th, at most `limit`.
+/// Sums over the pairs of some motions, frame by frame (equal time from the start).
+struct PairCurve {
+  std::vector<double> sumM;   ///< of poseDistance over pairs of which both go on
+  std::vector<double> pairs;  ///< such pairs
+  std::vector<int> motions;   ///< motions that go on: what a point rests on
+
+  /// Mean over pairs at a frame, metres; NaN where there is none.
+  double meanM(size_t frame) const;
+  /// Over all pairs and frames of [first, last): the diversity, metres; NaN where there is no pair.
+  double meanM(size_t first, size_t last) const;
+};
+/// Frames end with the second longest motion. Poses as rootFramePoses gives them.
+PairCurve pairCurve(const std::vector<Matrix>& poses);
+
+/// Which of `count` things are taken where there are too many: evenly spread, at most `limit`.
 std::vector<int> spreadIndices(int count, int limit);
 
 }  // namespace marey::stats

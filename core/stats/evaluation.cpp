@@ -3,67 +3,45 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "base/random.h"
 #include "stats/bones.h"
-#include "stats/sample_distance.h"
+#include "stats/interval.h"
 #include "stats/statistic.h"
 
 namespace marey::stats {
 namespace {
 
-/// Streams of the bootstrap stage that halve instead of resampling.
-constexpr uint32_t kSplitStream = 1;
-
-std::vector<int> ones(size_t count) {
-  return std::vector<int>(count, 1);
-}
-
-struct Interval {
-  std::optional<double> low, high;
-};
-
-Interval intervalOf(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  if (values.size() < 2) return {};
-  std::sort(values.begin(), values.end());
-  return {sortedQuantile(values, 0.025), sortedQuantile(values, 0.975)};
-}
-
-Interval bootstrap(const WeightedValue& value, size_t clips, const EvaluationOptions& options) {
-  if (clips < 2) return {};
+/// The values of a statistic in bootstrap resamples of controls.
+std::vector<double> resampledValues(const WeightedValue& value, const ControlSets& sets,
+                                    const EvaluationOptions& options) {
   std::vector<double> values;
-  for (int r = 0; r < options.resamples; ++r) {
-    const auto index = static_cast<uint32_t>(r);
-    values.push_back(value({resampleWeights(static_cast<int>(clips), options.seed, index)}));
-  }
-  return intervalOf(std::move(values));
+  for (int r = 0; r < options.resamples; ++r)
+    values.push_back(value(sets.drawn(options.seed, static_cast<uint32_t>(r))));
+  return values;
 }
 
-/// The clips in a random order (Fisher-Yates), so that halves are its two ends.
-std::vector<int> shuffledIndices(size_t count, uint64_t seed, uint32_t split) {
-  std::vector<int> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  const RandomKey key{
-      .seed = seed, .sample = split, .frame = kSplitStream, .stage = RandomStage::Bootstrap};
-  for (size_t i = count; i-- > 1;) {
-    const auto j =
-        static_cast<size_t>(uniformAt(key, static_cast<uint32_t>(i)) * static_cast<double>(i + 1));
-    std::swap(order[i], order[j]);
-  }
-  return order;
+Interval bootstrap(const WeightedValue& value, const ControlSets& sets,
+                   const EvaluationOptions& options) {
+  if (sets.ownCount() < 2) return {};
+  return percentileInterval(resampledValues(value, sets, options));
 }
 
-/// Values between random halves of natural clips: of a comparison their distance, else the
-/// absolute difference of their values. `value` was prepared with natural motion on both sides.
-std::vector<double> halfDistances(const WeightedValue& value, bool comparison, size_t clips,
-                                  const EvaluationOptions& options) {
+/// Of a distance: both sides are resampled.
+Interval distanceBootstrap(double distance, const WeightedValue& value, const ControlSets& sets,
+                           const EvaluationOptions& options) {
+  const size_t clusters = std::min(sets.ownCount(), sets.naturalCount());
+  if (clusters < 2) return {};
+  return distanceInterval(distance, resampledValues(value, sets, options), clusters);
+}
+
+/// Values between two sets of natural motion of the sizes at hand: of a comparison their distance,
+/// else the absolute difference of their values. `value` was prepared with natural motion on both
+/// sides.
+std::vector<double> naturalDistances(const WeightedValue& value, bool comparison,
+                                     const ControlSets& sets, const EvaluationOptions& options) {
   std::vector<double> out;
   for (int s = 0; s < options.splits; ++s) {
-    const auto order = shuffledIndices(clips, options.seed, static_cast<uint32_t>(s));
-    std::vector<int> first(clips, 0);
-    std::vector<int> second(clips, 0);
-    for (size_t i = 0; i < clips; ++i) (i < clips / 2 ? first : second)[order[i]] = 1;
-    out.push_back(comparison ? value({first, second}) : std::abs(value({first}) - value({second})));
+    const Weights two = sets.bothNatural(options.seed, static_cast<uint32_t>(s));
+    out.push_back(comparison ? value(two) : std::abs(value({two.clips}) - value({two.natural})));
   }
   return out;
 }
@@ -88,20 +66,21 @@ const std::vector<ClipPart>& partsFor(const Statistic& statistic,
 
 void addNatural(StatisticResult& result, const Statistic& statistic,
                 const std::vector<ClipPart>& parts, const StatisticSetting& setting,
-                const EvaluationOptions& options) {
-  const size_t count = setting.own.clips;
+                const ControlSets& sets, const EvaluationOptions& options) {
   if (!statistic.applies(setting)) return;
   const WeightedValue value = statistic.combine(parts, parts, setting);
-  std::vector<double> halves;
-  if (count >= 2) halves = halfDistances(value, statistic.comparison, count, options);
-  result.noiseFloor = meanOf(halves);
+  std::vector<double> distances;
+  if (sets.naturalCount() >= 2)
+    distances = naturalDistances(value, statistic.comparison, sets, options);
+  result.noiseFloor = meanOf(distances);
   Interval interval;
   if (statistic.comparison) {
     result.natural = result.noiseFloor;
-    interval = intervalOf(std::move(halves));
+    interval = percentileInterval(std::move(distances));
   } else {
-    result.natural = finite(value({ones(count)}));
-    interval = bootstrap(value, count, options);
+    const ControlSets own(setting.controls, {});
+    result.natural = finite(value(own.once()));
+    interval = bootstrap(value, own, options);
   }
   result.naturalLow = interval.low;
   result.naturalHigh = interval.high;
@@ -117,6 +96,13 @@ void checkInput(const StatisticInput& input) {
     throw InputError({.path = "statistics"}, "at least one clip", "none");
   checkSet(*input.clips, input.clips->front());
   if (input.natural) checkSet(*input.natural, input.clips->front());
+  const auto checkControls = [](const std::vector<int>& controls, const std::vector<Clip>& clips) {
+    if (!controls.empty() && controls.size() != clips.size())
+      throwInput({.path = "statistics"}, fmt::format("the controls of {} clips", clips.size()),
+                 "{}", controls.size());
+  };
+  checkControls(input.controls, *input.clips);
+  if (input.natural) checkControls(input.naturalControls, *input.natural);
   if (input.wanted && input.wanted->size() != input.clips->size())
     throwInput({.path = "statistics"}, fmt::format("{} wanted paths", input.clips->size()), "{}",
                input.wanted->size());
@@ -131,7 +117,10 @@ SetFacts factsOfSet(const std::vector<Clip>& clips, const std::vector<int>& feet
 StatisticSetting settingOf(const StatisticInput& input, const SetFacts* natural) {
   StatisticSetting out{.skeleton = input.clips->front().skeleton,
                        .feet = input.feet,
+                       .toes = input.toes,
                        .footStepCmS = input.footStepCmS,
+                       .controls = input.controls,
+                       .naturalControls = input.naturalControls,
                        .own = factsOfSet(*input.clips, input.feet),
                        .natural = natural,
                        .wanted = input.wanted};
@@ -152,16 +141,6 @@ StatisticSet setOf(const std::vector<Statistic>& statistics, const std::vector<C
 }
 
 }  // namespace
-
-std::vector<int> resampleWeights(int clips, uint64_t seed, uint32_t index) {
-  std::vector<int> weights(static_cast<size_t>(clips), 0);
-  const RandomKey key{.seed = seed, .sample = index, .stage = RandomStage::Bootstrap};
-  for (int i = 0; i < clips; ++i) {
-    const int drawn = static_cast<int>(uniformAt(key, static_cast<uint32_t>(i)) * clips);
-    ++weights[std::min(drawn, clips - 1)];
-  }
-  return weights;
-}
 
 void requireComparable(const Clip& clip, const Clip& first) {
   if (clip.skeleton->names != first.skeleton->names)
@@ -215,7 +194,9 @@ WeightedValue prepared(const Statistic& statistic, const StatisticInput& input) 
 }
 
 double valueOf(const Statistic& statistic, const StatisticInput& input) {
-  return prepared(statistic, input)({ones(input.clips->size())});
+  const ControlSets sets(
+      input.controls.empty() ? controlsEach(input.clips->size()) : input.controls, {});
+  return prepared(statistic, input)({sets.once().clips});
 }
 
 std::vector<StatisticResult> evaluate(const std::vector<Statistic>& statistics,
@@ -223,6 +204,8 @@ std::vector<StatisticResult> evaluate(const std::vector<Statistic>& statistics,
                                       const EvaluationOptions& options, Progress& progress) {
   const auto rules = rulesOf(statistics);
   const std::vector<ClipPart> none;
+  const ControlSets sets(set.setting.controls,
+                         natural ? natural->setting.controls : std::vector<int>());
   std::vector<StatisticResult> out;
   for (size_t i = 0; i < statistics.size(); ++i) {
     const Statistic& statistic = statistics[i];
@@ -230,25 +213,23 @@ std::vector<StatisticResult> evaluate(const std::vector<Statistic>& statistics,
     progress.report(static_cast<double>(i) / static_cast<double>(statistics.size()),
                     statistic.name);
     if (!statistic.applies(set.setting)) continue;
-    StatisticResult result{statistic.name,
-                           statistic.unit,
-                           statistic.definition,
-                           statistic.source,
-                           0.0,
-                           {},
-                           {},
-                           {},
-                           {},
-                           {},
-                           {}};
+    StatisticResult result{.name = statistic.name,
+                           .unit = statistic.unit,
+                           .definition = statistic.definition,
+                           .source = statistic.source};
     const auto& naturalParts = natural ? partsFor(statistic, rules, *natural) : none;
-    const WeightedValue value =
-        statistic.combine(partsFor(statistic, rules, set), naturalParts, set.setting);
-    result.value = value({ones(set.setting.own.clips)});
-    const Interval interval = bootstrap(value, set.setting.own.clips, options);
+    const auto& parts = partsFor(statistic, rules, set);
+    result.leftOut = static_cast<size_t>(std::count(parts.begin(), parts.end(), ClipPart()));
+    result.clips = parts.size() - result.leftOut;
+    result.controls = sets.ownCount();
+    const WeightedValue value = statistic.combine(parts, naturalParts, set.setting);
+    result.value = value(sets.once());
+    const Interval interval = statistic.comparison
+                                  ? distanceBootstrap(result.value, value, sets, options)
+                                  : bootstrap(value, sets, options);
     result.low = interval.low;
     result.high = interval.high;
-    if (natural) addNatural(result, statistic, naturalParts, natural->setting, options);
+    if (natural) addNatural(result, statistic, naturalParts, natural->setting, sets, options);
     out.push_back(std::move(result));
   }
   progress.report(1.0, "statistics");

@@ -1,14 +1,19 @@
 #include "stats/footsteps.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "motion/roles.h"
+#include "stats/controls.h"
 
 namespace marey::stats {
 namespace {
+
+/// Of a sum of shares, relative: far above the rounding of a million terms, far below one step.
+constexpr double kRounding = 1e-9;
 
 /// One run of slow frames after another: run(first, length) in indices of `speeds`.
 template <typename Run>
@@ -42,6 +47,24 @@ std::vector<int> feetOf(const Skeleton& skeleton, const std::string& names) {
                    "joints named as feet (or a choice of them)", joints);
 }
 
+std::vector<int> toesOf(const Skeleton& skeleton, const std::vector<int>& feet) {
+  std::vector<int> out;
+  for (const int foot : feet) {
+    std::vector<int> children;
+    int named = -1;
+    for (int j = 0; j < skeleton.jointCount(); ++j) {
+      if (skeleton.parents[static_cast<size_t>(j)] != foot) continue;
+      children.push_back(j);
+      std::string name = skeleton.names[static_cast<size_t>(j)];
+      std::transform(name.begin(), name.end(), name.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      if (named < 0 && name.find("toe") != std::string::npos) named = j;
+    }
+    out.push_back(named >= 0 ? named : children.size() == 1 ? children.front() : foot);
+  }
+  return out;
+}
+
 std::vector<double> horizontalSpeedsCmS(const Clip& clip, int joint) {
   std::vector<double> speeds;
   for (int t = 1; t < clip.frameCount(); ++t) {
@@ -67,7 +90,7 @@ std::vector<double> footstepTolerances(const FootstepOptions& options) {
 FootstepTally footstepTally(const Clip& clip, const FootstepOptions& options) {
   checkFeet(clip, options.feet);
   const std::vector<double> tolerances = footstepTolerances(options);
-  FootstepTally tally;
+  FootstepTally tally{.lengthS = clip.seconds()};
   for (auto* sums : {&tally.count, &tally.seconds, &tally.squaredSeconds})
     sums->assign(tolerances.size(), 0.0);
   for (int foot : options.feet) {
@@ -84,42 +107,50 @@ FootstepTally footstepTally(const Clip& clip, const FootstepOptions& options) {
 }
 
 FootstepCurve curveOf(const std::vector<double>& tolerances,
-                      const std::vector<FootstepTally>& tallies, const std::vector<int>& weights) {
+                      const std::vector<FootstepTally>& tallies,
+                      const std::vector<double>& weights) {
   FootstepCurve curve{.toleranceCmS = tolerances, .count = {}};
-  curve.count.assign(tolerances.size(), 0);
-  for (size_t i = 0; i < tallies.size(); ++i)
-    for (size_t k = 0; k < tolerances.size(); ++k)
-      curve.count[k] += weights[i] * static_cast<long>(tallies[i].count[k]);
+  curve.count.assign(tolerances.size(), 0.0);
+  for (size_t i = 0; i < tallies.size(); ++i) {
+    curve.lengthS += weights[i] * tallies[i].lengthS;
+    for (size_t k = 0; k < tallies[i].count.size(); ++k)
+      curve.count[k] += weights[i] * tallies[i].count[k];
+  }
   if (!curve.count.empty())
     curve.maxCount = *std::max_element(curve.count.begin(), curve.count.end());
-  if (curve.maxCount == 0) {
+  if (curve.maxCount == 0.0) {
     curve.v95CmS = std::numeric_limits<double>::quiet_NaN();
     return curve;
   }
-  // In whole numbers: 0.95 * max has no exact double.
-  const auto first = std::find_if(curve.count.begin(), curve.count.end(),
-                                  [&](long f) { return 100 * f >= 95 * curve.maxCount; });
+  // 0.95 * max has no exact double, and shares of a third add up to almost a whole number.
+  const auto first = std::find_if(curve.count.begin(), curve.count.end(), [&](double f) {
+    return 100.0 * f >= 95.0 * curve.maxCount * (1.0 - kRounding);
+  });
   const auto k = static_cast<size_t>(first - curve.count.begin());
   curve.v95CmS = tolerances[k];
   double sum = 0.0;
   double squares = 0.0;
   for (size_t i = 0; i < tallies.size(); ++i) {
+    if (tallies[i].count.empty()) continue;
     sum += weights[i] * tallies[i].seconds[k];
     squares += weights[i] * tallies[i].squaredSeconds[k];
   }
-  const auto n = static_cast<double>(curve.count[k]);
+  const double n = curve.count[k];
   curve.durationMeanS = sum / n;
   curve.durationStdS = std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
+  curve.stepsPerS = n / curve.lengthS;
   return curve;
 }
 
-FootstepCurve footstepCurve(const std::vector<Clip>& clips, const FootstepOptions& options) {
+FootstepCurve footstepCurve(const std::vector<Clip>& clips, const FootstepOptions& options,
+                            const std::vector<int>& controls) {
   if (clips.empty()) throw InputError({.path = "footsteps"}, "at least one clip", "none");
   if (options.feet.empty()) throw InputError({.path = "footsteps"}, "at least one foot", "none");
   std::vector<FootstepTally> tallies;
   tallies.reserve(clips.size());
   for (const Clip& clip : clips) tallies.push_back(footstepTally(clip, options));
-  return curveOf(footstepTolerances(options), tallies, std::vector<int>(clips.size(), 1));
+  const ControlSets sets(controls.empty() ? controlsEach(clips.size()) : controls, {});
+  return curveOf(footstepTolerances(options), tallies, sets.once().clips);
 }
 
 std::vector<ContactInterval> contactIntervals(const Clip& clip, const std::vector<int>& feet,

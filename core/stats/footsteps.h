@@ -19,11 +19,15 @@ struct FootstepOptions {
 /// at tolerance v is a maximal run of frames with speed < v within one clip and one foot.
 struct FootstepCurve {
   std::vector<double> toleranceCmS;
-  std::vector<long> count;  ///< f(v): footsteps of all clips and feet at each tolerance
-  long maxCount = 0;
+  /// f(v): footsteps of all clips and feet at each tolerance; of several samples per control, where
+  /// each counts by its share, per control.
+  std::vector<double> count;
+  double maxCount = 0.0;
   double v95CmS = 0.0;         ///< first v with f(v) >= 0.95 max f; NaN where there is no step
   double durationMeanS = 0.0;  ///< of the steps at v95: frames of the run / rate
   double durationStdS = 0.0;   ///< population standard deviation
+  double stepsPerS = 0.0;      ///< f(v95) / length of the motion: the step rate
+  double lengthS = 0.0;        ///< of all clips, weighted as they are
 };
 
 /// A run of frames [firstFrame, lastFrame] in which a foot is slower than the tolerance.
@@ -49,8 +53,15 @@ struct ContactRule {
 /// where `names` is empty. Throws InputError where there are none.
 std::vector<int> feetOf(const Skeleton& skeleton, const std::string& names = {});
 
-/// Throws InputError on no clips, no feet, a foot that no joint is, or a step that is not positive.
-FootstepCurve footstepCurve(const std::vector<Clip>& clips, const FootstepOptions& options);
+/// The joints of rules about toes: the child of each foot that is named a toe, else its only child,
+/// else the foot itself (the toes of a quadruped, a skeleton that ends at the ankles).
+std::vector<int> toesOf(const Skeleton& skeleton, const std::vector<int>& feet);
+
+/// With `controls` (the number of every clip's control), f is per control: the mean over the clips
+/// along each, summed over controls. Throws InputError on no clips, no feet, a foot that no joint
+/// is, or a step that is not positive.
+FootstepCurve footstepCurve(const std::vector<Clip>& clips, const FootstepOptions& options,
+                            const std::vector<int>& controls = {});
 
 /// Contacts of one clip at a tolerance, foot by foot in time order: the rows of a gait diagram.
 std::vector<ContactInterval> contactIntervals(const Clip& clip, const std::vector<int>& feet,
@@ -63,12 +74,15 @@ std::vector<double> horizontalSpeedsCmS(const Clip& clip, int joint);
 
 /// What one clip adds to every tolerance of a sweep; sums of clips give the curve of a set.
 struct FootstepTally {
+  /// By tolerance; empty: nothing.
   std::vector<double> count, seconds, squaredSeconds;
+  double lengthS = 0.0;  ///< of the clip
 };
 std::vector<double> footstepTolerances(const FootstepOptions& options);
 FootstepTally footstepTally(const Clip& clip, const FootstepOptions& options);
-/// The curve of tallies counted `weights` times each.
+/// The curve of tallies counted `weights` times each (ControlSets::once for shares).
 FootstepCurve curveOf(const std::vector<double>& tolerances,
-                      const std::vector<FootstepTally>& tallies, const std::vector<int>& weights);
+                      const std::vector<FootstepTally>& tallies,
+                      const std::vector<double>& weights);
 
 }  // namespace marey::stats

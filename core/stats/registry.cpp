@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 
 #include "base/error.h"
@@ -14,9 +15,6 @@
 
 namespace marey::stats {
 namespace {
-
-/// Clips whose pairs are compared for diversity: 19,900 pairs.
-constexpr int kDiversityClips = 200;
 
 bool always(const StatisticSetting&) {
   return true;
@@ -46,18 +44,28 @@ RatioPart jerkPart(const Clip& clip, size_t, const StatisticSetting&) {
   return {tally.sum, tally.count};
 }
 
+/// Clips by control, of controls with several: those that pairs are made of.
+std::map<int, std::vector<size_t>> diverseClips(const StatisticSetting& setting) {
+  std::map<int, std::vector<size_t>> out;
+  for (size_t i = 0; i < setting.controls.size(); ++i) out[setting.controls[i]].push_back(i);
+  std::erase_if(out, [](const auto& group) { return group.second.size() < 2; });
+  for (auto& [control, clips] : out) {
+    std::vector<size_t> kept;
+    for (const int i : spreadIndices(static_cast<int>(clips.size()), kDiversityMotions))
+      kept.push_back(clips[static_cast<size_t>(i)]);
+    clips = std::move(kept);
+  }
+  return out;
+}
+
 bool canBeDiverse(const StatisticSetting& setting) {
-  return setting.own.clips > 1 && rolesOf(*setting.skeleton).hasFacing();
+  return rolesOf(*setting.skeleton).hasFacing() && !diverseClips(setting).empty();
 }
 
-std::vector<int> diverseClips(const StatisticSetting& setting) {
-  return spreadIndices(static_cast<int>(setting.own.clips), kDiversityClips);
-}
-
-/// Poses of the clips that pairs are made of.
+/// Poses of a clip that shares its control with others; nothing of one that is alone.
 ClipPart posesPart(const Clip& clip, size_t index, const StatisticSetting& setting) {
-  const auto kept = diverseClips(setting);
-  if (!std::binary_search(kept.begin(), kept.end(), static_cast<int>(index))) return {};
+  const int control = setting.controls[index];
+  if (std::count(setting.controls.begin(), setting.controls.end(), control) < 2) return {};
   const Matrix poses = rootFramePoses(clip);
   Packer packer;
   packer.add(static_cast<long>(poses.rows()))
@@ -65,23 +73,38 @@ ClipPart posesPart(const Clip& clip, size_t index, const StatisticSetting& setti
   return packer.take();
 }
 
+Matrix posesOf(const ClipPart& part) {
+  Unpacker bytes(part);
+  const long rows = bytes.number<long>();
+  const auto values = bytes.list<float>();
+  return Eigen::Map<const Matrix>(values.data(), rows,
+                                  static_cast<long>(values.size()) / std::max(1L, rows));
+}
+
+/// The mean over controls of the diversity along each.
 WeightedValue diversity(const std::vector<ClipPart>& parts, const std::vector<ClipPart>&,
                         const StatisticSetting& setting) {
-  const auto kept = diverseClips(setting);
-  std::vector<Matrix> poses;
-  for (const int i : kept) {
-    Unpacker bytes(parts[static_cast<size_t>(i)]);
-    const long rows = bytes.number<long>();
-    const auto values = bytes.list<float>();
-    poses.emplace_back(Eigen::Map<const Matrix>(
-        values.data(), rows, static_cast<long>(values.size()) / std::max(1L, rows)));
+  struct Along {
+    double valueM;
+    std::vector<size_t> clips;
+  };
+  std::vector<Along> controls;
+  for (auto& [control, clips] : diverseClips(setting)) {
+    std::vector<Matrix> poses;
+    for (const size_t clip : clips) poses.push_back(posesOf(parts[clip]));
+    const PairCurve curve = pairCurve(poses);
+    if (!curve.pairs.empty()) controls.push_back({curve.meanM(0, curve.pairs.size()), clips});
   }
-  auto distances = std::make_shared<const std::vector<double>>(pairDistances(poses));
-  return [=](const Weights& weights) {
-    std::vector<int> own;
-    own.reserve(kept.size());
-    for (int i : kept) own.push_back(weights.clips[i]);
-    return 100.0 * meanPairDistance(*distances, own);
+  return [controls](const Weights& weights) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const Along& along : controls) {
+      double weight = 0.0;
+      for (const size_t clip : along.clips) weight += weights.clips[clip];
+      sum += weight * along.valueM;
+      count += weight;
+    }
+    return count > 0.0 ? 100.0 * sum / count : std::numeric_limits<double>::quiet_NaN();
   };
 }
 
@@ -100,16 +123,23 @@ std::vector<Statistic> bodyStatistics() {
   return {
       {"bone_length_rmse", "cm",
        "Root mean square deviation of bone lengths over bones and frames from their reference: the "
-       "mean of natural motion, else the clip's skeleton.",
-       "Henter, Alexanderson, Beskow 2020 (MoGlow), Sec. 5.3", false, hasBones,
-       ratioRule(boneError), combineRatio([](double square) { return 100.0 * std::sqrt(square); })},
-      {"jerk", "m/s^3", "Mean norm of the third derivative of joint positions, per second.",
-       "Flash and Hogan 1985", false, always, ratioRule(jerkPart), combineRatio()},
+       "mean of natural motion, else the clip's skeleton, else the mean of the clips.",
+       "Henter, Alexanderson, Beskow 2020 (MoGlow), Sec. 5.3; the choice of reference is Marey's",
+       false, hasBones, ratioRule(boneError),
+       combineRatio([](double square) { return 100.0 * std::sqrt(square); })},
+      {"jerk", "m/s^3",
+       "Mean over joints and frames of the Euclidean norm of the third difference of the position, "
+       "times the rate cubed.",
+       "Marey; the third derivative as in Flash and Hogan 1985. Not the jerk of FlowMDM, which is "
+       "per frame, an L1 norm and a maximum over joints",
+       false, always, ratioRule(jerkPart), combineRatio()},
       {"diversity", "cm",
-       "Mean over pairs of clips and equal times of the root mean square joint distance in the "
-       "root frame (of more than 200 clips 200, evenly spread).",
-       "Yuan and Kitani 2020 (DLow, average pairwise distance), in the root frame", false,
-       canBeDiverse, std::make_shared<const PartRule>(PartRule{posesPart}), diversity},
+       "Mean over pairs of motions along the same control, over frames (equal time from the start) "
+       "and then over controls, of the root mean square joint distance in the root frame (of more "
+       "than 48 motions along one control 48, evenly spread).",
+       "Marey; after the average pairwise distance of Yuan and Kitani 2020 (DLow), which takes one "
+       "norm over the whole sequence",
+       false, canBeDiverse, std::make_shared<const PartRule>(PartRule{posesPart}), diversity},
       {"path_error", "cm",
        "Mean floor distance of the root trajectory from the wanted one, mean over clips.", "Marey",
        false, hasWanted, ratioRule(pathErrorPart), combineRatio()},
@@ -130,6 +160,7 @@ std::shared_ptr<const PartRule> ratioRule(
   return std::make_shared<const PartRule>(PartRule{
       [part = std::move(part)](const Clip& clip, size_t index, const StatisticSetting& setting) {
         const RatioPart ratio = part(clip, index, setting);
+        if (ratio.count == 0.0) return ClipPart();
         Packer packer;
         packer.add(ratio.sum).add(ratio.count);
         return packer.take();
@@ -141,6 +172,10 @@ WeightedValue weightedRatio(const std::vector<ClipPart>& packed,
   std::vector<RatioPart> parts;
   parts.reserve(packed.size());
   for (const ClipPart& part : packed) {
+    if (part.empty()) {
+      parts.push_back({});
+      continue;
+    }
     Unpacker bytes(part);
     const double sum = bytes.number<double>();
     parts.push_back({sum, bytes.number<double>()});

@@ -26,9 +26,13 @@ ClipPart samplesPart(const Clip& clip, size_t index, const SetFacts& set,
   const int phase =
       set.frames > kLongSet ? static_cast<int>(index % static_cast<size_t>(stride)) : 0;
   Packer packer;
+  bool some = false;
   for (const Quantity quantity : quantities)
-    for (const auto& samples : jointSamples(clip, quantity, stride, phase)) packer.add(samples);
-  return packer.take();
+    for (const auto& samples : jointSamples(clip, quantity, stride, phase)) {
+      packer.add(samples);
+      some = some || !samples.empty();
+    }
+  return some ? packer.take() : ClipPart();
 }
 
 /// samples[quantity and joint][clip]
@@ -37,7 +41,8 @@ std::vector<std::vector<std::vector<double>>> samplesByJoint(const std::vector<C
   std::vector<std::vector<std::vector<double>>> out(lists);
   for (const ClipPart& part : parts) {
     Unpacker bytes(part);
-    for (auto& list : out) list.push_back(bytes.list<double>());
+    for (auto& list : out)
+      list.push_back(part.empty() ? std::vector<double>() : bytes.list<double>());
   }
   return out;
 }

@@ -56,8 +56,8 @@ PooledSamples::PooledSamples(const std::vector<std::vector<double>>& groups,
             [](const Value& a, const Value& b) { return a.value < b.value; });
 }
 
-SampleDistance PooledSamples::distance(const std::vector<int>& weights,
-                                       const std::vector<int>& referenceWeights) const {
+SampleDistance PooledSamples::distance(const std::vector<double>& weights,
+                                       const std::vector<double>& referenceWeights) const {
   // What a value adds to its side's distribution function; negative for the reference, so that
   // the running sum is the gap between the two.
   std::vector<double> steps(m_sizes.size(), 0.0);

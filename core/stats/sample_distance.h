@@ -26,8 +26,8 @@ class PooledSamples {
                 const std::vector<std::vector<double>>& reference);
   /// Distances with every value of group i counted weights[i] times, and likewise those of the
   /// reference (empty: once each); NaN when a side weighs nothing.
-  SampleDistance distance(const std::vector<int>& weights,
-                          const std::vector<int>& referenceWeights = {}) const;
+  SampleDistance distance(const std::vector<double>& weights,
+                          const std::vector<double>& referenceWeights = {}) const;
 
  private:
   struct Value {

@@ -11,13 +11,23 @@ namespace marey::stats {
 namespace {
 
 constexpr double kWeightHeightM = 0.025;
-constexpr double kLowFootM = 0.05;
+constexpr float kLowFootM = 0.05f;
 constexpr double kSkateCmS = 50.0;
+constexpr size_t kSkateWindow = 5;  ///< frames
 /// sqrt(0.02 cm^2) thirty times a second.
 const double kContactCmS = 30.0 * std::sqrt(0.02);
 
 double heightAt(const Clip& clip, int t, int joint, double standing) {
   return std::max(0.0, clip.at(t, joint).y() - standing);
+}
+
+/// Mean of five values about one, zeros beyond the ends.
+double centredMean(const std::vector<double>& values, size_t at) {
+  constexpr size_t kHalf = kSkateWindow / 2;
+  double sum = 0.0;
+  for (size_t i = at < kHalf ? 0 : at - kHalf; i <= at + kHalf && i < values.size(); ++i)
+    sum += values[i];
+  return sum / kSkateWindow;
 }
 
 double speedCmS(const Clip& clip, int t, int joint) {
@@ -55,22 +65,18 @@ SkateTally heightWeightedSkate(const Clip& clip, const std::vector<int>& feet,
   return tally;
 }
 
-SkateTally skatingShare(const Clip& clip, const std::vector<int>& feet,
-                        const std::vector<double>& standingHeights) {
-  SkateTally tally;
-  for (int t = 1; t < clip.frameCount(); ++t) {
-    bool skates = false;
-    for (size_t f = 0; f < feet.size(); ++f) {
-      const bool low = heightAt(clip, t, feet[f], standingHeights[f]) < kLowFootM &&
-                       heightAt(clip, t - 1, feet[f], standingHeights[f]) < kLowFootM;
-      const Vec3 d = clip.at(t, feet[f]) - clip.at(t - 1, feet[f]);
-      const double speed = 100.0 * clip.fps * std::hypot(d.x(), d.z());
-      skates = skates || (low && speed > kSkateCmS);
+SkateTally skatingShare(const Clip& clip, const std::vector<int>& toes) {
+  std::vector<bool> skates(static_cast<size_t>(std::max(0, clip.frameCount() - 1)), false);
+  for (const int toe : toes) {
+    const std::vector<double> speeds = horizontalSpeedsCmS(clip, toe);
+    for (size_t i = 0; i < speeds.size(); ++i) {
+      const int t = static_cast<int>(i) + 1;
+      const bool low = clip.at(t, toe).y() < kLowFootM && clip.at(t - 1, toe).y() < kLowFootM;
+      if (low && speeds[i] > kSkateCmS && centredMean(speeds, i) > kSkateCmS) skates[i] = true;
     }
-    tally.sum += skates ? 1.0 : 0.0;
-    tally.frames += 1.0;
   }
-  return tally;
+  return {static_cast<double>(std::count(skates.begin(), skates.end(), true)),
+          static_cast<double>(skates.size())};
 }
 
 SkateTally contactShare(const Clip& clip, const std::vector<int>& feet) {

@@ -1,5 +1,6 @@
-// Foot skate and contact by published rules. They disagree with each other and are not zero for
-// natural motion: give the natural value beside every one.
+// Foot skate and contact by published rules: where a rule names a published code, it gives that
+// code's number. They disagree with each other and are not zero for natural motion: give the
+// natural value beside every one.
 #pragma once
 
 #include <vector>
@@ -18,18 +19,21 @@ struct SkateTally {
   double frames = 0.0;
 };
 
-/// Mean skate s = v (2 - 2^(h/H)), 0 where h > H, with H = 2.5 cm, v horizontal speed in cm/s and h
-/// the height of the foot above standing; over feet and frames (Zhang et al. 2018, MANN).
+/// Mean skate s = v (2 - 2^(h/H)), 0 where h > H, with H = 2.5 cm and v horizontal speed in cm/s
+/// (Zhang et al. 2018, MANN); ours: h is the height of the foot above standing, and the mean is
+/// over feet and frames.
 SkateTally heightWeightedSkate(const Clip& clip, const std::vector<int>& feet,
                                const std::vector<double>& standingHeights);
-/// Share of frames in which some foot is lower than 5 cm above standing now and in the frame before
-/// and moves faster than 50 cm/s, which is 2.5 cm per frame at 20 fps (Karunratanakul et al. 2023,
-/// Guided Motion Diffusion).
-SkateTally skatingShare(const Clip& clip, const std::vector<int>& feet,
-                        const std::vector<double>& standingHeights);
+/// Share of frames in which some toe skates: lower than 5 cm (above the floor y = 0) in this frame
+/// and the one before, and faster over the floor than 50 cm/s in this frame and in the mean of five
+/// frames about it (zeros beyond the ends). The skating ratio of Guided Motion Diffusion
+/// (Karunratanakul et al. 2023, calculate_skating_ratio at 2f6264a), which has it at 20 fps and for
+/// joints 10 and 11 of HumanML3D, the toes.
+SkateTally skatingShare(const Clip& clip, const std::vector<int>& toes);
 /// Share of feet and frames in contact: squared displacement in a thirtieth of a second below
-/// 0.02 cm^2, which is a speed below 4.24 cm/s (LaFAN1: Harvey et al. 2020; the rule of Holden et
-/// al. 2016 with its factor).
+/// 0.02 cm^2, which is a speed below 4.24 cm/s. The test is that of LaFAN1's extract_feet_contacts
+/// (Harvey et al. 2020, in centimetres at 30 fps); ours: other rates by speed, the mean over
+/// feet and frames, and no repeat of the last frame.
 SkateTally contactShare(const Clip& clip, const std::vector<int>& feet);
 
 }  // namespace marey::stats

@@ -12,6 +12,7 @@
 #include "base/job.h"
 #include "motion/clip.h"
 #include "motion/features.h"
+#include "stats/controls.h"
 #include "stats/footsteps.h"
 #include "stats/statistic_parts.h"
 
@@ -24,14 +25,14 @@ struct StatisticInput {
   const std::vector<Clip>* natural = nullptr;
   /// Wanted root trajectory of every clip, at the clip's rate; null where there is none.
   const std::vector<std::vector<RootFrame>>* wanted = nullptr;
-  std::vector<int> feet;     ///< joints of footstep and skate analysis; empty: none of these
-  double footStepCmS = 1.0;  ///< increment of the footstep tolerance
-};
-
-/// How often each clip and each natural clip is counted; no natural weights: once each.
-struct Weights {
-  std::vector<int> clips;
-  std::vector<int> natural = {};
+  /// The number of the control that every clip follows; empty: each has one of its own.
+  std::vector<int> controls = {};
+  /// The same of natural clips and in the same numbering: a sample and the natural clip whose
+  /// control it follows have one number. Empty: each has one of its own that no sample follows.
+  std::vector<int> naturalControls = {};
+  std::vector<int> feet;       ///< joints of footstep and skate analysis; empty: none of these
+  std::vector<int> toes = {};  ///< joints of rules about toes; empty: toesOf the feet
+  double footStepCmS = 1.0;    ///< increment of the footstep tolerance
 };
 
 /// A statistic made ready for one set: its value under weights. NaN where the weighted set has no
@@ -40,6 +41,7 @@ using WeightedValue = std::function<double(const Weights& weights)>;
 
 /// How the part of one clip is worked out. Statistics may share a rule: it is followed once.
 struct PartRule {
+  /// "" of a clip that has nothing to add: it is left out, and counted as such.
   std::function<ClipPart(const Clip& clip, size_t index, const StatisticSetting& setting)> part;
 };
 
@@ -80,19 +82,23 @@ double valueOf(const Statistic& statistic, const StatisticInput& input);
 struct StatisticResult {
   std::string name, unit, definition, source;
   double value = 0.0;
-  /// 95 % percentile bootstrap over clips; none for fewer than two clips.
+  /// 95 % bootstrap over controls; none for fewer than two of them. Of a comparison: corrected for
+  /// the bias of distances between samples, with the natural side resampled as well (interval.h).
   std::optional<double> low, high;
-  /// The same on the natural clips. A comparison has here its value between random halves of the
-  /// natural clips (mean; 2.5 and 97.5 percentile): what a perfect model would get.
+  /// The same on the natural clips. A comparison has here its value between two sets of natural
+  /// motion (mean; 2.5 and 97.5 percentile): what a perfect model would get.
   std::optional<double> natural, naturalLow, naturalHigh;
-  /// Natural against natural: mean absolute difference (of a comparison: mean distance) between
-  /// random halves of the natural clips. A difference below it says nothing.
+  /// Natural against natural: mean absolute difference (of a comparison: mean distance) between two
+  /// sets drawn from the natural clips, of as many controls as either side has. A difference below
+  /// it says nothing.
   std::optional<double> noiseFloor;
+  size_t clips = 0, controls = 0;  ///< that the value comes from
+  size_t leftOut = 0;              ///< clips that add nothing to it: too short for it, or alone
 };
 
 struct EvaluationOptions {
   int resamples = 400;  ///< of the bootstrap; 0: no intervals
-  int splits = 20;      ///< random halvings of the natural clips; 0: no noise floor
+  int splits = 40;      ///< pairs of sets out of the natural clips; 0: no noise floor
   uint64_t seed = 1;
 };
 
@@ -117,9 +123,6 @@ std::vector<StatisticResult> evaluate(const std::vector<Statistic>& statistics,
                                       const EvaluationOptions& options, Progress& progress);
 /// Throws InputError unless a clip can stand in one set with `first`: same joints, same rate.
 void requireComparable(const Clip& clip, const Clip& first);
-
-/// Weights of bootstrap resample `index`: how often each of n clips was drawn in n draws.
-std::vector<int> resampleWeights(int clips, uint64_t seed, uint32_t index);
 
 /// The rule of footstep counts, which a curve of the whole set can be made from as well.
 std::shared_ptr<const PartRule> footstepRule();

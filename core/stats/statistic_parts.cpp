@@ -5,6 +5,8 @@
 
 #include "base/packing.h"
 #include "stats/bones.h"
+#include "stats/controls.h"
+#include "stats/footsteps.h"
 #include "stats/sample_distance.h"
 
 namespace marey::stats {
@@ -123,6 +125,11 @@ SetFacts SetFacts::unpacked(Unpacker& bytes) {
 }
 
 void StatisticSetting::completeReferences() {
+  if (controls.empty()) controls = controlsEach(own.clips);
+  if (natural && naturalControls.empty())
+    naturalControls =
+        controlsEach(natural->clips, 1 + *std::max_element(controls.begin(), controls.end()));
+  if (toes.empty()) toes = toesOf(*skeleton, feet);
   const SetFacts& reference = natural ? *natural : own;
   standingHeights = reference.standingHeights();
   meanBoneLengths = reference.meanBoneLengths();
@@ -131,6 +138,7 @@ void StatisticSetting::completeReferences() {
 StatisticSetting StatisticSetting::ofNatural() const {
   StatisticSetting out = *this;
   out.own = *natural;
+  out.controls = naturalControls;
   out.wanted = nullptr;
   return out;
 }

@@ -62,7 +62,9 @@ SetFacts factsOf(const Clip& clip, const std::vector<int>& feet);
 struct StatisticSetting {
   std::shared_ptr<const Skeleton> skeleton;  ///< of the first clip
   std::vector<int> feet;     ///< joints of footstep and skate analysis; empty: none of these
+  std::vector<int> toes;     ///< joints of rules about toes
   double footStepCmS = 1.0;  ///< increment of the footstep tolerance
+  std::vector<int> controls, naturalControls;  ///< of every clip, as in StatisticInput
   SetFacts own;
   const SetFacts* natural = nullptr;  ///< null where there is no natural motion
   /// Wanted root trajectory of every clip, at the clip's rate; null where there is none.
@@ -70,7 +72,7 @@ struct StatisticSetting {
   /// Of every foot and bone, in metres: of natural motion, else of the clips themselves.
   std::vector<double> standingHeights, meanBoneLengths;
 
-  /// Works the references out, once for all clips.
+  /// Works out what was left empty (controls, toes) and the references, once for all clips.
   void completeReferences();
   /// The setting of the natural motion, which is then its own natural motion.
   StatisticSetting ofNatural() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "base/error.h"
@@ -9,7 +10,6 @@
 
 namespace marey::gui {
 namespace {
-constexpr int kCompared = 48;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// One motion as pairs compare it. Throws InputError unless it has joints and rate of `first`.
@@ -18,26 +18,7 @@ Matrix rootFramePose(const Clip& clip, const Clip& first) {
     throwInput({.path = clip.name}, fmt::format("{} fps as the other motions", first.fps), "{}",
                clip.fps);
   requireJointsOf(clip, first);
-  FeatureSpec spec;
-  spec.fps = clip.fps;
-  return extractFeatures(clip, spec).pose;
-}
-
-double distanceCm(const Matrix& a, const Matrix& b, Eigen::Index t) {
-  const double joints = static_cast<double>(a.cols()) / 3.0;
-  return 100.0 * std::sqrt(static_cast<double>((a.row(t) - b.row(t)).squaredNorm()) / joints);
-}
-
-double meanPairCm(const std::vector<Matrix>& poses, Eigen::Index t) {
-  double sum = 0.0;
-  int pairs = 0;
-  for (size_t i = 0; i < poses.size(); ++i)
-    for (size_t j = i + 1; j < poses.size(); ++j) {
-      if (t >= poses[i].rows() || t >= poses[j].rows()) continue;
-      sum += distanceCm(poses[i], poses[j], t);
-      ++pairs;
-    }
-  return pairs > 0 ? sum / pairs : kNaN;
+  return stats::rootFramePoses(clip);
 }
 
 /// Mean over the compared motions but `itself` (an index into them; -1: it is none of them).
@@ -49,7 +30,7 @@ std::vector<float> distancesFrom(const Matrix& pose, const std::vector<Matrix>& 
     int others = 0;
     for (size_t j = 0; j < compared.size(); ++j) {
       if (static_cast<int>(j) == itself || t >= compared[j].rows()) continue;
-      sum += distanceCm(pose, compared[j], t);
+      sum += 100.0 * stats::poseDistance(pose, compared[j], t);
       ++others;
     }
     out.push_back(static_cast<float>(others > 0 ? sum / others : kNaN));
@@ -57,10 +38,17 @@ std::vector<float> distancesFrom(const Matrix& pose, const std::vector<Matrix>& 
   return out;
 }
 
+/// Whether the motions were not made along one path.
+bool differentControls(const MotionSet& set) {
+  if (set.natural) return true;
+  return std::adjacent_find(set.follows.begin(), set.follows.end(), std::not_equal_to<>()) !=
+         set.follows.end();
+}
+
 DiversityCurve curveOf(const MotionSet& set, Progress& progress) {
   const Clip& first = *set.clips.front();
   const std::vector<int> chosen =
-      stats::spreadIndices(static_cast<int>(set.clips.size()), kCompared);
+      stats::spreadIndices(static_cast<int>(set.clips.size()), stats::kDiversityMotions);
   std::vector<Matrix> poses;
   for (const int i : chosen) {
     progress.throwIfCancelled();
@@ -68,15 +56,9 @@ DiversityCurve curveOf(const MotionSet& set, Progress& progress) {
   }
   DiversityCurve curve{
       .look = lookOf(set), .fps = first.fps, .compared = static_cast<int>(poses.size())};
-  Eigen::Index frames = 0;
-  for (const Matrix& pose : poses) frames = std::max(frames, pose.rows());
-  for (Eigen::Index t = 0; t < frames; ++t) {
-    progress.throwIfCancelled();
-    curve.distanceCm.push_back(meanPairCm(poses, t));
-  }
-  // Beyond the second-longest motion there is no pair.
-  while (!curve.distanceCm.empty() && std::isnan(curve.distanceCm.back()))
-    curve.distanceCm.pop_back();
+  if (differentControls(set)) curve.look.name += " (different controls)";
+  progress.throwIfCancelled();
+  curve.pairs = stats::pairCurve(poses);
   for (size_t i = 0; i < set.clips.size(); ++i) {
     progress.throwIfCancelled();
     progress.report(static_cast<double>(i) / static_cast<double>(set.clips.size()));
@@ -104,16 +86,14 @@ std::vector<DiversityCurve> diversityCurves(const std::vector<MotionSet>& sets,
 }
 
 double meanInRange(const DiversityCurve& curve, const std::optional<TimeRange>& range) {
-  double sum = 0.0;
-  int count = 0;
-  for (size_t t = 0; t < curve.distanceCm.size(); ++t) {
-    const double time = static_cast<double>(t) / curve.fps;
-    if (range && (time < range->beginS || time > range->endS)) continue;
-    if (!std::isfinite(curve.distanceCm[t])) continue;
-    sum += curve.distanceCm[t];
-    ++count;
+  const size_t frames = curve.pairs.pairs.size();
+  size_t first = 0, last = frames;
+  if (range) {
+    const auto at = [&](size_t t) { return static_cast<double>(t) / curve.fps; };
+    while (first < frames && at(first) < range->beginS) ++first;
+    while (last > first && at(last - 1) > range->endS) --last;
   }
-  return count > 0 ? sum / count : kNaN;
+  return 100.0 * curve.pairs.meanM(first, last);
 }
 
 LinkedGrid diversityGrid(const std::vector<DiversityCurve>& curves) {
@@ -121,8 +101,21 @@ LinkedGrid diversityGrid(const std::vector<DiversityCurve>& curves) {
   render::Chart& chart = out.grid.charts.front();
   chart.x = {.label = "time", .unit = "s"};
   chart.y = {.label = "mean distance of pairs", .unit = "cm"};
+  for (const DiversityCurve& curve : curves) {
+    std::vector<double> distanceCm;
+    for (size_t t = 0; t < curve.pairs.pairs.size(); ++t)
+      distanceCm.push_back(100.0 * curve.pairs.meanM(t));
+    out.add(curve.look.line(framesInSeconds(distanceCm.size(), curve.fps), distanceCm),
+            curve.look.ids);
+  }
+  out.grid.charts.push_back({});
+  render::Chart& counts = out.grid.charts.back();
+  counts.x = {.label = "time", .unit = "s"};
+  counts.y = {.label = "motions compared"};
+  counts.legend = render::LegendPlace::None;
   for (const DiversityCurve& curve : curves)
-    out.add(curve.look.line(framesInSeconds(curve.distanceCm.size(), curve.fps), curve.distanceCm),
+    out.add(curve.look.line(framesInSeconds(curve.pairs.motions.size(), curve.fps),
+                            {curve.pairs.motions.begin(), curve.pairs.motions.end()}),
             curve.look.ids);
   return out;
 }

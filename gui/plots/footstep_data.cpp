@@ -70,24 +70,25 @@ FootstepResult resultOf(const MotionSet& set, const ClipsInRange& part, const Fo
     result.motions.push_back(stepsOf(part.ids[i], part.clips[i], feet));
     result.minutes += result.motions.back().minutes;
     for (size_t f = 0; f < feet.size(); ++f) tallies[f].push_back(feet[f]);
-    all.insert(all.end(), feet.begin(), feet.end());
+    all.push_back(stats::footstepTally(
+        part.clips[i],
+        {.feet = feetOf(*part.clips[i].skeleton, query.feet), .stepCmS = query.stepCmS}));
     progress.report(static_cast<double>(i + 1) / static_cast<double>(part.clips.size()));
   }
   const auto tolerances = stats::footstepTolerances({.feet = {}, .stepCmS = query.stepCmS});
-  for (const auto& foot : tallies)
-    result.feet.push_back(stats::curveOf(tolerances, foot, std::vector<int>(foot.size(), 1)));
-  result.all = stats::curveOf(tolerances, all, std::vector<int>(all.size(), 1));
+  const std::vector<double> each(all.size(), 1.0);
+  for (const auto& foot : tallies) result.feet.push_back(stats::curveOf(tolerances, foot, each));
+  result.all = stats::curveOf(tolerances, all, each);
   addDurations(result, part.clips, query.feet);
   return result;
 }
 
 FootstepRow rowOf(const FootstepResult& result, const std::string& foot,
                   const stats::FootstepCurve& curve) {
-  const auto steps = static_cast<double>(curve.maxCount);
   return {.set = result.look.name,
           .foot = foot,
-          .steps = steps,
-          .stepsPerMinute = steps / result.minutes,
+          .steps = curve.maxCount,
+          .stepsPerMinute = 60.0 * curve.stepsPerS,
           .v95CmS = curve.v95CmS,
           .durationMeanS = curve.durationMeanS,
           .durationStdS = curve.durationStdS,
@@ -113,7 +114,7 @@ double longestShown(const std::vector<FootstepResult>& results) {
 void addCounts(LinkedGrid& out, const FootstepResult& result, double scale) {
   const stats::FootstepCurve& curve = result.all;
   std::vector<double> y;
-  for (const long count : curve.count) y.push_back(scale * static_cast<double>(count));
+  for (const double count : curve.count) y.push_back(scale * count);
   out.add(result.look.line(curve.toleranceCmS, y), result.look.ids);
   const auto at = std::find_if(curve.toleranceCmS.begin(), curve.toleranceCmS.end(),
                                [&](double v) { return v >= curve.v95CmS - 1e-9; });

@@ -49,6 +49,8 @@ std::vector<ChartHighlight> footstepHighlights(const std::vector<FootstepResult>
 
 struct FootstepRow {
   std::string set, foot;  ///< foot "all" comes first of every set
+  /// f of the set, and steps at v95 per minute: 60 times the statistic footstep_rate of a set of
+  /// motions each on a control of its own.
   double steps = 0.0, stepsPerMinute = 0.0, v95CmS = 0.0, durationMeanS = 0.0, durationStdS = 0.0;
   std::vector<MotionId> ids;
 };

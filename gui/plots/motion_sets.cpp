@@ -48,6 +48,7 @@ ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range
     if (span.empty()) continue;
     out.ids.push_back(set.ids[i]);
     out.clips.push_back(range ? sliceFrames(*clip, span.first, span.last) : *clip);
+    if (!set.follows.empty()) out.follows.push_back(set.follows[i]);
     if (set.wanted.empty()) continue;
     const auto frames = static_cast<int>(set.wanted.size());
     const auto begin = set.wanted.begin();

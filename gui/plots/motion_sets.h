@@ -19,6 +19,9 @@ struct MotionSet {
   std::vector<MotionId> ids;
   std::vector<ClipPtr> clips;     ///< one per id
   std::vector<RootFrame> wanted;  ///< the path that was asked for
+  /// For each motion the index of the natural clip whose control it follows; empty: the motions of
+  /// a system all follow `wanted`, natural ones each their own.
+  std::vector<int> follows = {};
 };
 
 /// Sets of the groups that have something visible: the visible samples of a system, but all of the
@@ -33,6 +36,7 @@ struct ClipsInRange {
   std::vector<MotionId> ids;  ///< of every clip
   std::vector<Clip> clips;
   std::vector<std::vector<RootFrame>> wanted;  ///< of every clip; empty for natural motion
+  std::vector<int> follows = {};               ///< of every clip, as in MotionSet; may be empty
 };
 ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range);
 

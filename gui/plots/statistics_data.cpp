@@ -38,6 +38,26 @@ std::vector<int> feetOf(const std::vector<Clip>& clips, const std::string& names
   }
 }
 
+/// Motions of a path that was drawn are one cluster, which no natural clip shares.
+std::vector<int> controlsOf(const ClipsInRange& set) {
+  std::vector<int> out = set.follows;
+  out.resize(set.clips.size(), -1);
+  return out;
+}
+
+/// Of the natural clips inside the range, those to compare a set with.
+ComparedNatural comparedWith(const ClipsInRange& set, const ClipsInRange& natural,
+                             NaturalChoice choice) {
+  std::vector<int> follows;
+  for (const int clip : set.follows) {
+    const auto at = std::find_if(natural.ids.begin(), natural.ids.end(),
+                                 [&](const MotionId& id) { return id.index == clip; });
+    follows.push_back(at == natural.ids.end() ? -1 : static_cast<int>(at - natural.ids.begin()));
+  }
+  const bool some = std::any_of(follows.begin(), follows.end(), [](int f) { return f >= 0; });
+  return naturalToCompare(natural.clips, follows, some ? choice : NaturalChoice::All);
+}
+
 /// In the order of the registry: a set may have statistics that the first one lacks.
 void sortRows(StatisticsTable& table) {
   const auto& all = stats::allStatistics();
@@ -52,10 +72,10 @@ void sortRows(StatisticsTable& table) {
 
 bool StatisticsInput::sameAs(const StatisticsInput& other) const {
   const auto sameSet = [](const MotionSet& a, const MotionSet& b) {
-    return a.name == b.name && a.clips == b.clips;
+    return a.name == b.name && a.clips == b.clips && a.follows == b.follows;
   };
   return range == other.range && feet == other.feet && footStepCmS == other.footStepCmS &&
-         seed == other.seed &&
+         seed == other.seed && against == other.against &&
          std::equal(sets.begin(), sets.end(), other.sets.begin(), other.sets.end(), sameSet);
 }
 
@@ -71,8 +91,8 @@ std::string StatisticsInput::text() const {
 StatisticsTable statisticsTable(const StatisticsInput& input, Progress& progress) {
   StatisticsTable table{.input = input, .systems = {}, .rows = {}};
   const MotionSet* naturalMotions = naturalSet(input.sets);
-  std::vector<Clip> natural;
-  if (naturalMotions != nullptr) natural = clipsIn(*naturalMotions, input.range).clips;
+  ClipsInRange natural;
+  if (naturalMotions != nullptr) natural = clipsIn(*naturalMotions, input.range);
   std::vector<ClipsInRange> sets;
   for (const MotionSet& set : input.sets) {
     if (set.natural) continue;
@@ -81,14 +101,25 @@ StatisticsTable statisticsTable(const StatisticsInput& input, Progress& progress
     table.systems.push_back(set.name);
     sets.push_back(std::move(clips));
   }
-  const bool naturalAlone = sets.empty() && !natural.empty();
-  if (naturalAlone) sets.push_back({.ids = {}, .clips = natural, .wanted = {}});
+  const bool naturalAlone = sets.empty() && !natural.clips.empty();
+  if (naturalAlone) sets.push_back({.ids = {}, .clips = natural.clips, .wanted = {}});
   for (size_t i = 0; i < sets.size(); ++i) {
-    const stats::StatisticInput one{.clips = &sets[i].clips,
-                                    .natural = natural.empty() || naturalAlone ? nullptr : &natural,
-                                    .wanted = sets[i].wanted.empty() ? nullptr : &sets[i].wanted,
-                                    .feet = feetOf(sets[i].clips, input.feet),
-                                    .footStepCmS = input.footStepCmS};
+    stats::StatisticInput one{.clips = &sets[i].clips,
+                              .wanted = sets[i].wanted.empty() ? nullptr : &sets[i].wanted,
+                              .feet = feetOf(sets[i].clips, input.feet),
+                              .footStepCmS = input.footStepCmS};
+    if (!input.feet.empty()) one.toes = one.feet;
+    if (!naturalAlone) one.controls = controlsOf(sets[i]);
+    std::vector<Clip> compared;
+    if (!naturalAlone && !natural.clips.empty()) {
+      const ComparedNatural choice = comparedWith(sets[i], natural, input.against);
+      table.compared.push_back(choice.text);
+      for (const size_t c : choice.clips) {
+        compared.push_back(natural.clips[c]);
+        one.naturalControls.push_back(natural.ids[c].index);
+      }
+      one.natural = &compared;
+    }
     Progress part = progress.part(static_cast<double>(i) / static_cast<double>(sets.size()),
                                   static_cast<double>(i + 1) / static_cast<double>(sets.size()));
     const auto results = stats::evaluate(stats::allStatistics(), one, {.seed = input.seed}, part);

@@ -8,6 +8,7 @@
 #include "plots/motion_sets.h"
 
 #include "base/job.h"
+#include "experiment/comparison.h"
 #include "stats/statistic.h"
 
 namespace marey::gui {
@@ -19,6 +20,9 @@ struct StatisticsInput {
   std::string feet;  ///< joint names as in the document; empty: found by name
   double footStepCmS = 1.0;
   uint64_t seed = 1;
+  /// Natural motion that sets are compared with; a set whose motions follow no natural clip is
+  /// compared with all.
+  NaturalChoice against = NaturalChoice::All;
 
   bool sameAs(const StatisticsInput& other) const;
   /// "Natural (120 motions), MG – circle (8 motions), 1.00 to 3.50 s"
@@ -34,7 +38,8 @@ struct StatisticsRow {
 
 struct StatisticsTable {
   StatisticsInput input;
-  std::vector<std::string> systems;  ///< names of the sets that are not natural
+  std::vector<std::string> systems;   ///< names of the sets that are not natural
+  std::vector<std::string> compared;  ///< of every system, the natural motion it is compared with
   std::vector<StatisticsRow> rows;
 };
 

@@ -184,9 +184,9 @@ TEST(Diversity, APickedMotionShowsItsDistanceFromTheOthers) {
   const auto picked = diversityHighlights(curves, {{2, 0}});
   ASSERT_EQ(picked.size(), 1U);
   // Of a set of two, every distance is that of the one pair.
-  ASSERT_LE(curves[1].distanceCm.size(), picked[0].y.size());
-  for (size_t t = 0; t < curves[1].distanceCm.size(); ++t)
-    EXPECT_NEAR(picked[0].y[t], curves[1].distanceCm[t], 1e-3);
+  ASSERT_LE(curves[1].pairs.pairs.size(), picked[0].y.size());
+  for (size_t t = 0; t < curves[1].pairs.pairs.size(); ++t)
+    EXPECT_NEAR(picked[0].y[t], 100.0 * curves[1].pairs.meanM(t), 1e-3);
 }
 
 TEST(Distributions, APickedMotionHasItsDensityAndItsValuesOverTime) {
@@ -220,13 +220,19 @@ TEST(Likelihoods, TheWorstFrameIsALineThatStandsForItsMotion) {
   EXPECT_EQ(picked[0].y, (std::vector<double>{5, 4, 3, 2}));
 }
 
-TEST(Diversity, MeanOverTimeIsThatOfPairDistances) {
+TEST(Diversity, MeanOverTimeIsTheStatistic) {
   const auto sets = motionSets(twoGroups());
   Progress progress;
   const auto curves = diversityCurves(sets, progress);
   ASSERT_EQ(curves.size(), 2U);
-  const double pair = stats::pairDistances(clipsIn(sets[1], std::nullopt).clips, 100000)[1];
-  EXPECT_NEAR(meanInRange(curves[1], std::nullopt), 100.0 * pair, 1e-6);
+  const std::vector<Clip> clips = clipsIn(sets[1], std::nullopt).clips;
+  const double statistic =
+      stats::valueOf(stats::statisticByName("diversity"),
+                     {.clips = &clips, .controls = std::vector<int>(clips.size(), 0)});
+  EXPECT_NEAR(meanInRange(curves[1], std::nullopt), statistic, 1e-9);
+  EXPECT_EQ(curves[1].pairs.motions.front(), 2);
+  EXPECT_TRUE(curves[0].look.name.ends_with("(different controls)")) << curves[0].look.name;
+  EXPECT_FALSE(curves[1].look.name.ends_with("(different controls)")) << curves[1].look.name;
 }
 
 TEST(Distributions, DistanceOfASetToItselfIsZeroAndElsewhereThatOfTheStatistics) {

@@ -89,6 +89,26 @@ TEST(Footsteps, WeightsCountAClipSeveralTimes) {
   EXPECT_NEAR(weighted.durationMeanS, repeated.durationMeanS, 1e-12);
 }
 
+TEST(Footsteps, SeveralSamplesPerControlCountPerControl) {
+  // Two samples along control 7 with 1 and 3 steps at the lowest tolerance, one along 9 with 2.
+  const Clip one = stepClip({0.0f, 0.5f}, 20.0);
+  const Clip three = stepClip({0.0f, 0.5f, 0.0f, 0.5f, 0.0f}, 20.0);
+  const Clip two = stepClip({0.0f, 0.5f, 0.0f}, 20.0);
+  const auto curve = footstepCurve({one, three, two}, {.feet = {0}}, {7, 7, 9});
+  EXPECT_NEAR(curve.count[0], 2.0 + 2.0, 1e-12);
+  // Lengths likewise: frames (3 + 6) / 2 + 4, at 20 fps.
+  EXPECT_NEAR(curve.lengthS, 8.5 / 20.0, 1e-12);
+  EXPECT_NEAR(curve.stepsPerS, 4.0 / (8.5 / 20.0), 1e-9);
+  EXPECT_EQ(curve.v95CmS, 1.0);
+}
+
+TEST(Footsteps, SharesOfAThirdReachNinetyFivePercentWhereTheyAreTheMaximum) {
+  const Clip clip = stepClip({0.0f, 0.5f, 0.0f, 0.03f}, 20.0);
+  const auto curve = footstepCurve({clip, clip, clip}, {.feet = {0}}, {0, 0, 0});
+  EXPECT_NEAR(curve.maxCount, 2.0, 1e-12);
+  EXPECT_EQ(curve.v95CmS, 1.0);
+}
+
 TEST(Footsteps, WrongInputIsRefused) {
   const Clip clip = stepClip({0.0f}, 20.0);
   EXPECT_THROW(footstepCurve({}, {.feet = {0}}), InputError);
@@ -152,7 +172,7 @@ TEST(Footsteps, OfTheWalkerAreCountedAtTheLowestTolerance) {
   const auto curve = footstepCurve({clip}, {.feet = feet});
   const auto known =
       visible(w.truth, feet[0], 20.0).size() + visible(w.truth, feet[1], 20.0).size();
-  EXPECT_EQ(curve.maxCount, static_cast<long>(known));
+  EXPECT_EQ(curve.maxCount, static_cast<double>(known));
   EXPECT_EQ(curve.v95CmS, 1.0);
 }
 

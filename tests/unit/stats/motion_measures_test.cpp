@@ -9,6 +9,7 @@
 #include "motion/path.h"
 #include "motion/walker.h"
 #include "stats/diversity.h"
+#include "stats/footsteps.h"
 #include "stats/skate.h"
 #include "stats/trajectories.h"
 
@@ -25,15 +26,35 @@ TEST(Skate, TheHeightWeightFallsFromOneToZeroAtTwoAndAHalfCentimetres) {
   EXPECT_NEAR(tally.sum, 100.0 * (1.0 + 2.0 - std::numbers::sqrt2), 0.01);
 }
 
-TEST(Skate, TheShareCountsFastLowFramesOfAnyFoot) {
-  // 20 fps: 3 cm per frame are 60 cm/s (skates), 2 cm are 40 cm/s (does not), then a lifted foot.
-  const Clip clip = pointClip({Vec3(0, 0, 0), Vec3(0.03f, 0, 0), Vec3(0.05f, 0, 0),
-                               Vec3(0.15f, 0.1f, 0), Vec3(0.25f, 0, 0)},
-                              20.0);
-  const SkateTally tally = skatingShare(clip, {0}, {0.0});
-  EXPECT_EQ(tally.frames, 4.0);
-  EXPECT_EQ(tally.sum, 1.0);
-  EXPECT_EQ(skatingShare(clip, {0, 0}, {0.0, 0.0}).sum, 1.0);
+TEST(Skate, TheShareCountsLowFramesThatAreFastNowAndInTheMeanOfFive) {
+  // 20 fps, 4 cm per frame are 80 cm/s. One slip alone: the mean of five is 16 cm/s.
+  EXPECT_EQ(skatingShare(stepClip({0, 0, 0, 0.04f, 0, 0, 0}, 20.0), {0}).sum, 0.0);
+  // A slide of five: means 48, 64, 80, 64, 48 cm/s with zeros about; the middle three skate.
+  const SkateTally slide =
+      skatingShare(stepClip({0, 0, 0.04f, 0.04f, 0.04f, 0.04f, 0.04f, 0, 0}, 20.0), {0});
+  EXPECT_EQ(slide.frames, 9.0);
+  EXPECT_EQ(slide.sum, 3.0);
+  // Beyond the ends of the clip there are zeros: of four fast frames alone the middle two.
+  EXPECT_EQ(skatingShare(stepClip({0.04f, 0.04f, 0.04f, 0.04f}, 20.0), {0}).sum, 2.0);
+  // Either toe: the same frames count once.
+  EXPECT_EQ(skatingShare(stepClip({0.04f, 0.04f, 0.04f, 0.04f}, 20.0), {0, 0}).sum, 2.0);
+}
+
+TEST(Skate, AToeThatIsHighInEitherFrameDoesNotSkate) {
+  Clip clip = stepClip({0.04f, 0.04f, 0.04f, 0.04f, 0.04f}, 20.0);
+  EXPECT_EQ(skatingShare(clip, {0}).sum, 3.0);
+  clip.positions[3].y() = 0.06f;  // spoils frames 3 and 4
+  EXPECT_EQ(skatingShare(clip, {0}).sum, 1.0);
+  for (Vec3& p : clip.positions) p.y() = 0.1f;  // heights are absolute
+  EXPECT_EQ(skatingShare(clip, {0}).sum, 0.0);
+}
+
+TEST(Skate, ToesAreTheJointsBelowTheFeetThatAreNamedSoOrAreAlone) {
+  Skeleton s;
+  s.names = {"hips", "ankle", "heel", "LeftToeBase", "foot", "ball", "paw", "a", "b"};
+  s.parents = {-1, 0, 1, 1, 0, 4, 0, 6, 6};
+  s.offsets.assign(9, Vec3::Zero());
+  EXPECT_EQ(toesOf(s, {1, 4, 6, 8}), (std::vector<int>{3, 5, 6, 8}));
 }
 
 TEST(Skate, ContactIsASquaredDisplacementBelowTheLaFanFactor) {
@@ -90,25 +111,38 @@ TEST(PathError, IsTheDistanceAtEqualTimes) {
   EXPECT_THROW(pathError({}, wanted), InputError);
 }
 
+PairCurve curveOfClips(const std::vector<Clip>& clips) {
+  std::vector<Matrix> poses;
+  for (const Clip& clip : clips) poses.push_back(rootFramePoses(clip));
+  return pairCurve(poses);
+}
+
 TEST(Diversity, IsZeroForCopiesWhereverTheyWalk) {
   const Clip clip = walk(presetPath("slow", 3.0, 20.0), {.fps = 20.0}).clip;
   Clip moved = clip;
   for (Vec3& p : moved.positions) p = Vec3(p.z() + 3.0f, p.y(), -p.x());
-  const auto distances = pairDistances({clip, moved});
-  EXPECT_NEAR(distances[1], 0.0, 1e-4);
+  const PairCurve curve = curveOfClips({clip, moved});
+  EXPECT_NEAR(curve.meanM(0, curve.pairs.size()), 0.0, 1e-4);
 }
 
-TEST(Diversity, OfARaisedCopyIsTheRise) {
+TEST(Diversity, OfARaisedCopyIsTheRiseAndSaysHowManyMotionsGoOn) {
   const Clip clip = walk(presetPath("slow", 3.0, 20.0), {.fps = 20.0}).clip;
   Clip raised = clip;
   for (Vec3& p : raised.positions) p.y() += 0.3f;
-  const auto distances = pairDistances({clip, raised, clip});
-  EXPECT_NEAR(distances[1], 0.3, 1e-4);
-  EXPECT_NEAR(distances[5], 0.3, 1e-4);
-  // Pairs: 0.3, 0, 0.3; with the first clip twice: (2 x 0.3 + 2 x 0 + 0.3) / 5.
-  EXPECT_NEAR(meanPairDistance(distances, {1, 1, 1}), 0.2, 1e-4);
-  EXPECT_NEAR(meanPairDistance(distances, {2, 1, 1}), 0.18, 1e-4);
-  EXPECT_TRUE(std::isnan(meanPairDistance(distances, {3, 0, 0})));
+  const PairCurve curve = curveOfClips({clip, raised, sliceFrames(clip, 0, 20)});
+  ASSERT_EQ(curve.pairs.size(), static_cast<size_t>(clip.frameCount()));
+  // Pairs: 0.3, 0 and 0.3 for 20 frames, then 0.3 alone.
+  EXPECT_EQ(curve.motions[19], 3);
+  EXPECT_EQ(curve.motions[20], 2);
+  EXPECT_NEAR(curve.meanM(5), 0.2, 1e-3);
+  EXPECT_NEAR(curve.meanM(30), 0.3, 1e-4);
+  const double rest = clip.frameCount() - 20.0;
+  EXPECT_NEAR(curve.meanM(0, 1000), (20.0 * 0.6 + rest * 0.3) / (60.0 + rest), 1e-3);
+  EXPECT_TRUE(std::isnan(curve.meanM(5, 5)));
+}
+
+TEST(Diversity, OfOneMotionIsNothing) {
+  EXPECT_TRUE(pairCurve({Matrix::Zero(3, 6)}).pairs.empty());
 }
 
 TEST(Diversity, SpreadsTheClipsThatItKeeps) {

@@ -60,6 +60,7 @@ TEST(Registry, EveryStatisticHasAFiniteValueOnWalkers) {
   for (const Clip& clip : samples()) wanted.emplace_back(static_cast<size_t>(clip.frameCount()));
   StatisticInput input = inputOf(samples(), &natural());
   input.wanted = &wanted;
+  input.controls.assign(samples().size(), 0);
   for (const Statistic& s : allStatistics()) {
     ASSERT_TRUE(appliesTo(s, input)) << s.name;
     EXPECT_TRUE(std::isfinite(valueOf(s, input))) << s.name;
@@ -80,6 +81,7 @@ TEST(Registry, ValuesAreThoseOfTheFunctionsBehindThem) {
   const auto curve = footstepCurve(samples(), {.feet = input.feet});
   EXPECT_EQ(valueOf(statisticByName("footstep_v95"), input), curve.v95CmS);
   EXPECT_EQ(valueOf(statisticByName("footstep_duration"), input), curve.durationMeanS);
+  EXPECT_EQ(valueOf(statisticByName("footstep_rate"), input), curve.stepsPerS);
   EXPECT_NEAR(valueOf(statisticByName("bone_length_rmse"), input),
               boneLengthRmseCm(samples(), meanBoneLengths(natural())), 1e-9);
 }
@@ -91,8 +93,8 @@ TEST(Registry, AWeightOfTwoEqualsTheClipTwice) {
   const StatisticInput input = inputOf(clips, &natural());
   const StatisticInput doubled = inputOf(repeated, &natural());
   for (const Statistic& s : allStatistics()) {
-    // Diversity takes no pair of a clip and its own copy; path error needs wanted paths.
-    if (s.name == "diversity" || !appliesTo(s, input)) continue;
+    // Diversity needs motions along one control, path error wanted paths.
+    if (!appliesTo(s, input)) continue;
     EXPECT_NEAR(prepared(s, input)({{1, 2, 1, 1}}), valueOf(s, doubled),
                 1e-9 * std::max(1.0, std::abs(valueOf(s, doubled))))
         << s.name;
@@ -121,6 +123,20 @@ TEST(Registry, AFasterWalkIsFartherFromNaturalThanTheNoiseFloor) {
   EXPECT_EQ(speed.natural, speed.noiseFloor);
 }
 
+/// One number per clip.
+Statistic meanOfX() {
+  return {"mean",
+          "",
+          "The mean of x.",
+          "test",
+          false,
+          [](const StatisticSetting&) { return true; },
+          ratioRule([](const Clip& clip, size_t, const StatisticSetting&) {
+            return RatioPart{clip.at(0, 0).x(), 1.0};
+          }),
+          combineRatio()};
+}
+
 TEST(Bootstrap, WeightsAddUpToTheNumberOfClipsAndDependOnTheSeed) {
   const auto weights = resampleWeights(50, 3, 0);
   EXPECT_EQ(std::accumulate(weights.begin(), weights.end(), 0), 50);
@@ -135,24 +151,71 @@ TEST(Bootstrap, TheIntervalOfAMeanIsThatOfTheNormalApproximation) {
   std::vector<Clip> clips;
   for (int i = 0; i < 100; ++i)
     clips.push_back(pointClip({Vec3(static_cast<float>(i % 2), 0, 0)}, 20.0));
-  const Statistic mean{"mean",
-                       "",
-                       "The mean of x.",
-                       "test",
-                       false,
-                       [](const StatisticSetting&) { return true; },
-                       ratioRule([](const Clip& clip, size_t, const StatisticSetting&) {
-                         return RatioPart{clip.at(0, 0).x(), 1.0};
-                       }),
-                       combineRatio()};
+  const Statistic mean = meanOfX();
   const StatisticInput input{.clips = &clips, .natural = &clips};
-  const StatisticResult r = evaluate({mean}, input, {.resamples = 2000, .splits = 400}).front();
+  const StatisticResult r = evaluate({mean}, input, {.resamples = 2000, .splits = 2000}).front();
   EXPECT_NEAR(r.value, 0.5, 1e-12);
   EXPECT_NEAR(*r.low, 0.402, 0.02);
   EXPECT_NEAR(*r.high, 0.598, 0.02);
-  // Halves of 50 without replacement: the difference of their means has the standard deviation
-  // 2 * 0.5 / sqrt(99), and a normal value's mean absolute value is sqrt(2 / pi) of that.
-  EXPECT_NEAR(*r.noiseFloor, 0.0802, 0.01);
+  // Two sets of 100 with replacement: the difference of their means has the standard deviation
+  // 0.5 sqrt(2 / 100), and a normal value's mean absolute value is sqrt(2 / pi) of that.
+  EXPECT_NEAR(*r.noiseFloor, 0.0564, 0.004);
+}
+
+TEST(Bootstrap, SamplesAlongOneControlAreOneCluster) {
+  // Twenty controls with x = 0 or 1, five equal samples along each: as uncertain as twenty clips,
+  // not as a hundred.
+  std::vector<Clip> clips;
+  StatisticInput input{.clips = &clips};
+  for (int i = 0; i < 100; ++i) {
+    clips.push_back(pointClip({Vec3(static_cast<float>(i / 5 % 2), 0, 0)}, 20.0));
+    input.controls.push_back(i / 5);
+  }
+  const Statistic mean = meanOfX();
+  const StatisticResult r = evaluate({mean}, input, {.resamples = 4000}).front();
+  EXPECT_EQ(r.controls, 20U);
+  EXPECT_EQ(r.clips, 100U);
+  // The 2.5 and 97.5 percentiles of a binomial of 20 and 0.5 are 6 and 14; with 100 clusters they
+  // would be 0.4 and 0.6. One step is 0.05.
+  EXPECT_NEAR(*r.low, 0.3, 0.051);
+  EXPECT_NEAR(*r.high, 0.7, 0.051);
+}
+
+TEST(Bootstrap, MoreSamplesAlongAControlDoNotWeighMore) {
+  // x = 1 once along one control, x = 0 three times along the other: the mean over controls.
+  std::vector<Clip> clips = {pointClip({Vec3(1, 0, 0)}, 20.0)};
+  for (int i = 0; i < 3; ++i) clips.push_back(pointClip({Vec3(0, 0, 0)}, 20.0));
+  EXPECT_NEAR(valueOf(meanOfX(), {.clips = &clips, .controls = {4, 9, 9, 9}}), 0.5, 1e-12);
+}
+
+TEST(Bootstrap, OneControlHasNoInterval) {
+  StatisticInput input = inputOf(samples());
+  input.controls.assign(samples().size(), 3);
+  for (const StatisticResult& r : evaluate(allStatistics(), input)) {
+    EXPECT_FALSE(r.low.has_value()) << r.name;
+    EXPECT_TRUE(std::isfinite(r.value)) << r.name;
+  }
+}
+
+TEST(Evaluation, ClipsThatAddNothingAreCountedBesideTheNumber) {
+  std::vector<Clip> clips = {stepClip({0, 0, 0, 0.1f, 0}, 20.0), stepClip({0.1f}, 20.0)};
+  const StatisticResult r = find(evaluate(allStatistics(), {.clips = &clips}), "jerk");
+  EXPECT_EQ(r.clips, 1U);
+  EXPECT_EQ(r.leftOut, 1U);
+}
+
+TEST(Evaluation, DiversityIsAlongTheSameControlOnly) {
+  // Two walks along one control that differ by 0.3 m of height, and one far from both along
+  // another.
+  const Clip clip = walk(presetPath("slow", 3.0, 20.0), {.fps = 20.0}).clip;
+  std::vector<Clip> clips = {clip, clip, clip};
+  for (Vec3& p : clips[1].positions) p.y() += 0.3f;
+  for (Vec3& p : clips[2].positions) p.y() += 5.0f;
+  StatisticInput input{.clips = &clips, .controls = {0, 0, 1}};
+  const Statistic& diversity = statisticByName("diversity");
+  EXPECT_NEAR(valueOf(diversity, input), 30.0, 0.01);
+  input.controls = {};
+  EXPECT_FALSE(appliesTo(diversity, input));
 }
 
 TEST(Bootstrap, OneClipHasNoInterval) {

@@ -86,7 +86,7 @@ TEST(Rules, AreFollowedOnceForStatisticsThatShareThem) {
   EXPECT_EQ(std::count(rules.begin(), rules.end(), footstepRule()), 1);
   std::vector<Clip> clips;
   for (WalkerClip& w : walkerDataSet(2, 2.0, 5, 20.0)) clips.push_back(std::move(w.clip));
-  const StatisticInput input{.clips = &clips};
+  const StatisticInput input{.clips = &clips, .controls = {0, 0}};
   for (const Statistic& s : allStatistics())
     EXPECT_EQ(appliesTo(s, input),
               s.name == "jerk" || s.name == "diversity" || s.name == "bone_length_rmse")

@@ -175,7 +175,7 @@ Json toJson(const DoctorReport& r) {
   out["sides_evidence"] = r.sides.evidence;
   out["floor_m"] = optionalNumber(r.floorM);
   out["bone_drift"] = {{"max_std_m", r.boneDrift.maxStdM}, {"bone", r.boneDrift.bone}};
-  out["foot_skate_share"] = optionalNumber(r.footSkateShare);
+  out["sliding_near_floor_share"] = optionalNumber(r.footSkateShare);
   out["faults"] = Json::array();
   for (const Fault& fault : r.faults) out["faults"].push_back(toJson(fault));
   out["notes"] = r.notes;

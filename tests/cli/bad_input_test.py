@@ -6,7 +6,7 @@ import struct
 import subprocess
 import zipfile
 
-from support import Case, SharedModelCase, main, marey, read_tensors, write_tensors
+from support import LIMIT_S, Case, SharedModelCase, main, marey, read_tensors, write_tensors
 
 
 class MotionFiles(SharedModelCase):
@@ -77,7 +77,7 @@ class MotionFiles(SharedModelCase):
         # Were the promise believed, the memory for it would be asked for: 500 GB.
         limited = subprocess.run(
             ["sh", "-c", 'ulimit -v 8000000; exec "$@"', "sh", os.environ["MAREY_BINARY"],
-             "analyze", str(path)], capture_output=True, text=True, timeout=20, check=False)
+             "analyze", str(path)], capture_output=True, text=True, timeout=LIMIT_S, check=False)
         self.assertEqual(limited.returncode, 1, limited.stderr)
         self.assertIn("1000000000", limited.stderr)
         self.assert_unreadable(path, "billion.bvh:", "1000000000", "240")

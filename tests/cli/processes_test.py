@@ -7,7 +7,7 @@ import struct
 import subprocess
 import time
 
-from support import BINARY, Case, main, read_tensors
+from support import BINARY, LIMIT_S, Case, main, read_tensors
 
 MODEL = {"hidden": 32, "dropout": 0.5}
 
@@ -47,7 +47,7 @@ class Processes(Case):
             out.append(process)
         return out
 
-    def ends(self, processes, within=60):
+    def ends(self, processes, within=LIMIT_S):
         """(exit status, stderr) of each."""
         said = [p.communicate(timeout=within) for p in processes]
         return [(p.returncode, err) for p, (_, err) in zip(processes, said)]
@@ -57,7 +57,7 @@ class Processes(Case):
             return list(csv.DictReader(file))
 
     def wait_for_checkpoint(self, run, process):
-        until = time.monotonic() + 60
+        until = time.monotonic() + LIMIT_S
         while not (self.dir / run / "state.marey").exists():
             self.assertIsNone(process.poll(), "ended before it could be stopped")
             self.assertLess(time.monotonic(), until)
@@ -67,7 +67,7 @@ class Processes(Case):
         config = self.tiny_config(model=MODEL, batch=5, steps=8, checkpoint_every=4, ema=0.9,
                                   accumulate=2, validation_share=0.5)
         done = subprocess.run(self.words(config, "one"), capture_output=True, text=True,
-                              timeout=60, check=False)
+                              timeout=LIMIT_S, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         two = self.start(lambda rank: self.words(config, "two"),
                          ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"))
@@ -110,7 +110,7 @@ class Processes(Case):
         self.assertGreater(last, 0)
         # What was written is whole: one process goes on from there.
         done = subprocess.run(self.words(config, "stopped", "--resume", "--steps", last + 1),
-                              capture_output=True, text=True, timeout=60, check=False)
+                              capture_output=True, text=True, timeout=LIMIT_S, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(int(self.log("stopped")[-1]["step"]), last + 1)
 

@@ -5,7 +5,7 @@ import signal
 import subprocess
 import time
 
-from support import BINARY, Case, SharedModelCase, listing, main, marey, need_tools
+from support import BINARY, LIMIT_S, Case, SharedModelCase, listing, main, marey, need_tools
 
 # As many processes as asked for on any machine, also as root (containers).
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -17,7 +17,7 @@ def launch_words(ranks, *words):
     return ["mpirun", "-n", str(ranks), BINARY, *map(str, words)]
 
 
-def launch(ranks, *words, timeout=100, env=None):
+def launch(ranks, *words, timeout=LIMIT_S, env=None):
     """The finished run of several processes; of one without mpirun."""
     if ranks == 1:
         return marey(*words, timeout=timeout, env=env)
@@ -40,7 +40,7 @@ class RanksCase(SharedModelCase):
         return ("sample", self.model, "--path", "preset:figure-eight", "--seconds", seconds, "-n",
                 count, "--seed", 4, "--threads", 1, "--out", self.dir / out, *more)
 
-    def launch_json(self, ranks, *words, timeout=100):
+    def launch_json(self, ranks, *words, timeout=LIMIT_S):
         done = launch(ranks, *words, "--json", "--quiet", timeout=timeout)
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout)
@@ -79,7 +79,7 @@ class RanksSample(RanksCase):
         absent[2] = str(self.dir / "absent.marey")
         done = subprocess.run(
             [*launch_words(2, *self.sample_words("out", 40, 4)), ":", "-n", "1", *absent],
-            capture_output=True, text=True, timeout=100, check=False,
+            capture_output=True, text=True, timeout=LIMIT_S, check=False,
             env={**os.environ, **ENVIRONMENT})
         self.assertEqual(done.returncode, 1, done.stderr)
         lines = own_lines(done.stderr)
@@ -225,7 +225,7 @@ class RanksResume(RanksCase):
             self.assertLess(time.monotonic(), until)
             time.sleep(0.002)
         hurt(process)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=LIMIT_S)
         self.assertEqual(out, "")
         self.assertFalse((self.dir / "out").exists())
         self.assertLess(len(self.records()), self.COUNT // 16)

@@ -17,6 +17,8 @@ import unittest
 import zipfile
 
 BINARY = os.environ.get("MAREY_BINARY", "")
+# A program that hangs ends here; a busy machine must not.
+LIMIT_S = 280
 FIXTURES = pathlib.Path(__file__).resolve().parent.parent / "fixtures"
 SHARED = pathlib.Path(os.environ.get("MAREY_SHARED_DIR", "../shared"))
 
@@ -33,7 +35,7 @@ TINY_CONFIG = {
 }
 
 
-def marey(*words, timeout=50, cwd=None, env=None):
+def marey(*words, timeout=LIMIT_S, cwd=None, env=None):
     """The finished process; words may be paths, `env` is added to the environment."""
     return subprocess.run([BINARY, *map(str, words)], capture_output=True, text=True,
                           timeout=timeout, cwd=cwd, check=False, env={**os.environ, **(env or {})})
@@ -154,7 +156,7 @@ class Case(unittest.TestCase):
         self.dir = pathlib.Path(tempfile.mkdtemp(prefix="marey-cli-"))
         self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
 
-    def run_json(self, *words, timeout=50):
+    def run_json(self, *words, timeout=LIMIT_S):
         """Stdout of a run that succeeds is exactly one JSON object; --quiet silences stderr."""
         done = marey(*words, "--json", "--quiet", timeout=timeout)
         self.assertEqual(done.returncode, 0, f"{words}: {done.stderr}")

@@ -10,7 +10,7 @@ import subprocess
 import time
 import zipfile
 
-from support import BINARY, Case, SharedModelCase, main, marey, read_tensors
+from support import BINARY, LIMIT_S, Case, SharedModelCase, main, marey, read_tensors
 
 STEPS = 120
 
@@ -26,7 +26,7 @@ class KilledTraining(Case):
                 str(self.dir / run), "--threads", "1", "--quiet", *more]
 
     def finish(self, *words):
-        done = subprocess.run(words, capture_output=True, text=True, timeout=250, check=False)
+        done = subprocess.run(words, capture_output=True, text=True, timeout=LIMIT_S, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def interrupt(self, run, number):
@@ -34,13 +34,13 @@ class KilledTraining(Case):
         log = self.dir / run / "log.csv"
         process = subprocess.Popen(self.words(run), stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.stderr.close)
-        until = time.monotonic() + 100
+        until = time.monotonic() + LIMIT_S
         while not log.exists() or len(log.read_text().splitlines()) < 3:
             self.assertIsNone(process.poll(), "ended before it could be stopped")
             self.assertLess(time.monotonic(), until)
             time.sleep(0.005)
         process.send_signal(number)
-        process.wait(timeout=60)
+        process.wait(timeout=LIMIT_S)
         return process
 
     def stored_step(self, run):

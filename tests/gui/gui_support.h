@@ -14,7 +14,7 @@
 namespace marey::gui {
 
 /// Runs the event loop until `ready`; false after `seconds`.
-bool waitUntil(const std::function<bool()>& ready, double seconds = 60.0);
+bool waitUntil(const std::function<bool()>& ready, double seconds = 240.0);
 /// Runs the event loop for a while.
 void settle(int milliseconds = 200);
 render::Image pictureOf(QWidget& widget);

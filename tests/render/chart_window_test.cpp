@@ -1,6 +1,6 @@
 // What a window needs of charts: frames, clouds of lines, themes.
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <limits>
 
@@ -145,11 +145,10 @@ TEST(Cloud, OfAThousandLinesIsDrawnInAnInstant) {
   drawImage(grid, {900, 300});  // fonts are loaded once
   double best = 1e9;
   for (int run = 0; run < 5; ++run) {
-    const auto begin = std::chrono::steady_clock::now();
+    // Time of the processor: others may want it too.
+    const std::clock_t begin = std::clock();
     drawImage(grid, {900, 300});
-    const std::chrono::duration<double, std::milli> spent =
-        std::chrono::steady_clock::now() - begin;
-    best = std::min(best, spent.count());
+    best = std::min(best, 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
   RecordProperty("ms", static_cast<int>(best));
   std::printf("1,000 lines x 1,200 frames on 900 x 300 pixels: %.1f ms\n", best);

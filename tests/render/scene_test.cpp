@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include "base/error.h"
 #include "render/baseline.h"
@@ -168,9 +169,9 @@ TEST(Baseline, AMissingOneFailsAndKeepsThePicture) {
 }
 
 TEST(Baseline, AnotherColourOfTheSameBrightnessFails) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / "marey_baseline_colour";
-  std::filesystem::create_directories(folder);
+  std::string pattern = (std::filesystem::temp_directory_path() / "marey-baseline-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+  const std::filesystem::path folder = pattern;
   // 0.299 * 100 = 0.587 * 50.94
   writePng(folder / "flat_colour.png", Image(20, 20, {100 / 255.0, 0, 0, 1}));
   EXPECT_TRUE(matchesBaselineIn(folder.string(), Image(20, 20, {100 / 255.0, 0, 0, 1}),

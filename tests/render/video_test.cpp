@@ -1,6 +1,7 @@
 #include "render/video.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -72,10 +73,10 @@ Decoded decode(const fs::path& path) {
 
 class Video : public testing::Test {
  protected:
-  // One folder per test: tests run side by side.
+  // One folder per test and process: tests run side by side, and other users' may.
   fs::path m_folder =
-      fs::temp_directory_path() /
-      (std::string("marey_video_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+      fs::temp_directory_path() / (std::string("marey_video_") + std::to_string(::getpid()) + "_" +
+                                   testing::UnitTest::GetInstance()->current_test_info()->name());
   void SetUp() override {
     fs::remove_all(m_folder);
     fs::create_directories(m_folder);

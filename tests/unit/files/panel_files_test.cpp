@@ -4,6 +4,7 @@
 #include "panels/training_run.h"
 #include "shell/opened_files.h"
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/archive.h"
 #include "base/atomic_file.h"
@@ -20,7 +21,7 @@ class PanelFiles : public ::testing::Test {
  protected:
   void SetUp() override {
     m_folder = fs::temp_directory_path() /
-               (std::string("marey_panel_files_") +
+               (std::string("marey_panel_files_") + std::to_string(::getpid()) + "_" +
                 ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(m_folder);
     fs::create_directories(m_folder);

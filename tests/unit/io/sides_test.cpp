@@ -1,4 +1,5 @@
 // Left and right exchanged while reading.
+#include "unit/io/support.h"
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -13,11 +14,11 @@ namespace marey::io {
 namespace {
 
 TEST(SwappedSides, GiveEveryJointTheMotionOfTheOtherSide) {
-  const auto file = std::filesystem::temp_directory_path() / "marey_sides_test.bvh";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "walk.bvh";
   writeClip(walkerDataSet(1, 4.0, 3).front().clip, file);
   const Clip named = readClip(file);
   const Clip swapped = readClip(file, {.swapSides = true});
-  std::filesystem::remove(file);
   const std::vector<int> mirror = rolesOf(*named.skeleton).mirror;
   EXPECT_EQ(swapped.skeleton->names, named.skeleton->names);
   EXPECT_EQ(swapped.skeleton->parents, named.skeleton->parents);

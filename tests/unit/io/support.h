@@ -3,10 +3,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
+#include <stdlib.h>
 
 #include "base/error.h"
 #include "motion/clip.h"
@@ -16,11 +17,10 @@ namespace marey::test {
 /// A folder of its own that vanishes with the test.
 class TemporaryFolder {
  public:
-  TemporaryFolder()
-      : m_path(std::filesystem::temp_directory_path() /
-               ("marey-io-" + std::to_string(::getpid()) + "-" +
-                ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    std::filesystem::create_directories(m_path);
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "marey-io-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
+    m_path = pattern;
   }
   ~TemporaryFolder() {
     std::error_code ignored;

@@ -5,6 +5,7 @@
 
 #include "unit/report/walker_report.h"
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -21,9 +22,9 @@ namespace fs = std::filesystem;
 
 class Report : public testing::Test {
  protected:
-  // One folder per test: tests run side by side.
+  // One folder per test and process: tests run side by side, and other users' may.
   fs::path m_folder =
-      fs::temp_directory_path() / (std::string("marey_report_") +
+      fs::temp_directory_path() / (std::string("marey_report_") + std::to_string(::getpid()) + "_" +
                                    testing::UnitTest::GetInstance()->current_test_info()->name());
   ReportOptions m_small{.pdf = false, .sceneWidth = 160, .sceneHeight = 100};
   Progress m_progress;

@@ -1,6 +1,7 @@
 #include "experiment/document.h"
 
 #include <set>
+#include <tuple>
 
 #include "base/hash.h"
 #include "experiment/comparison.h"
@@ -8,65 +9,15 @@
 namespace marey {
 namespace {
 
-template <typename T>
-void requireAtLeast(const JsonReader& reader, const char* key, T value, T least) {
-  if (!(value >= least))
-    throwInput(reader.place(key), fmt::format("at least {}", least), "{}", value);
-}
-
-ExperimentSystem systemFromJson(const Json& value, const std::string& origin,
-                                const std::string& prefix) {
-  JsonReader reader(value, origin, prefix);
-  ExperimentSystem out;
-  out.name = reader.required<std::string>("name");
-  out.model = reader.required<std::string>("model");
-  out.temperature = reader.optional("temperature", out.temperature);
-  reader.finish();
-  requireAtLeast(reader, "temperature", out.temperature, 0.0);
-  return out;
-}
-
-ExperimentPath pathFromJson(const Json& value, const std::string& origin,
-                            const std::string& prefix) {
-  JsonReader reader(value, origin, prefix);
-  ExperimentPath out;
-  out.name = reader.required<std::string>("name");
-  if (reader.has("waypoints")) {
-    out.wayPoints = wayPointsFromJson({{"waypoints", reader.raw("waypoints")}}, origin, prefix);
-    out.seconds = reader.optional("seconds", 0.0);
-    if (reader.has("path"))
-      throw InputError(reader.place("path"), "either a path or way-points", "both");
-    if (out.wayPoints.size() < 2)
-      throwInput(reader.place("waypoints"), "at least two", "{}", out.wayPoints.size());
-  } else {
-    out.path = reader.required<std::string>("path");
-    out.seconds = reader.optional("seconds", out.seconds);
-  }
-  const auto start = reader.optional<std::string>("start", "mean");
-  reader.finish();
-  if (start != "mean" && start != "clip")
-    throw InputError(reader.place("start"), "'mean' or 'clip'", "'" + start + "'");
-  out.startFromClip = start == "clip";
-  if (out.startFromClip && !out.followsClip())
-    throw InputError(reader.place("start"), "'mean' for a path that is no clip:FILE", "'clip'");
-  if (out.seconds != 0.0) requireAtLeast(reader, "seconds", out.seconds, kShortestPathS);
-  return out;
-}
-
 /// The objects of a list, whose names must differ: figures and tables are keyed by them.
 template <typename T>
 std::vector<T> namedList(JsonReader& reader, const std::string& key,
                          T (*parse)(const Json&, const std::string&, const std::string&)) {
-  std::vector<T> out;
-  if (!reader.has(key)) return out;
-  const Json& list = reader.raw(key);
-  if (!list.is_array()) throw InputError(reader.place(key), "a list", list.type_name());
+  std::vector<T> out = listFrom(reader, key, parse);
   std::set<std::string> names;
-  for (size_t i = 0; i < list.size(); ++i) {
-    out.push_back(parse(list[i], reader.origin(), fmt::format("{}[{}].", key, i)));
-    if (!names.insert(out.back().name).second)
-      throw InputError(reader.place(key), "different names", "'" + out.back().name + "' twice");
-  }
+  for (const T& item : out)
+    if (!names.insert(item.name).second)
+      throw InputError(reader.place(key), "different names", "'" + item.name + "' twice");
   return out;
 }
 
@@ -97,6 +48,7 @@ Experiment experimentFromJson(const Json& value, const std::string& origin) {
   out.feet = reader.optional("feet", out.feet);
   out.toleranceStepCmS = reader.optional("tolerance_step_cm_s", out.toleranceStepCmS);
   out.against = againstFrom(reader, out.against);
+  if (reader.has("view")) out.view = viewStateFromJson(reader.raw("view"), origin, "view.");
   reader.finish();
   requireAtLeast(reader, "samples", out.samples, 1);
   requireAtLeast(reader, "held_out_samples", out.heldOutSamples, 0);
@@ -114,17 +66,13 @@ Experiment readExperiment(const std::filesystem::path& path) {
   return out;
 }
 
-Json toJson(const Experiment& e) {
+namespace {
+
+/// All that decides a number.
+Json withoutView(const Experiment& e) {
   Json systems = Json::array(), paths = Json::array();
-  for (const auto& s : e.systems)
-    systems.push_back({{"name", s.name}, {"model", s.model}, {"temperature", s.temperature}});
-  for (const auto& p : e.paths) {
-    Json one = p.wayPoints.empty() ? Json{{"path", p.path}} : toJson(p.wayPoints);
-    one["name"] = p.name;
-    one["seconds"] = p.seconds;
-    if (p.startFromClip) one["start"] = "clip";
-    paths.push_back(one);
-  }
+  for (const auto& s : e.systems) systems.push_back(toJson(s));
+  for (const auto& p : e.paths) paths.push_back(toJson(p));
   Json out = {{"title", e.title},
               {"notes", e.notes},
               {"natural", e.natural},
@@ -140,12 +88,28 @@ Json toJson(const Experiment& e) {
   return out;
 }
 
+}  // namespace
+
+bool Experiment::operator==(const Experiment& other) const {
+  const auto key = [](const Experiment& e) {
+    return std::tie(e.title, e.notes, e.natural, e.systems, e.paths, e.samples, e.heldOutSamples,
+                    e.seed, e.fps, e.feet, e.toleranceStepCmS, e.against, e.folder);
+  };
+  return key(*this) == key(other);
+}
+
+Json toJson(const Experiment& e) {
+  Json out = withoutView(e);
+  if (Json view = toJson(e.view); !view.empty()) out["view"] = std::move(view);
+  return out;
+}
+
 void writeExperiment(const std::filesystem::path& path, const Experiment& experiment) {
   writeJson(path, toJson(experiment));
 }
 
 std::string experimentHash(const Experiment& experiment) {
-  return contentHash(jsonText(toJson(experiment)));
+  return contentHash(jsonText(withoutView(experiment)));
 }
 
 }  // namespace marey

@@ -8,30 +8,10 @@
 #include <vector>
 
 #include "base/json.h"
-#include "motion/path.h"
+#include "experiment/parts.h"
+#include "experiment/view_state.h"
 
 namespace marey {
-
-struct ExperimentSystem {
-  std::string name;   ///< shown in figures and tables
-  std::string model;  ///< model file
-  double temperature = 1.0;
-  bool operator==(const ExperimentSystem&) const = default;
-};
-
-/// Shorter paths hold no motion to speak of.
-inline constexpr double kShortestPathS = 0.2;
-
-struct ExperimentPath {
-  std::string name;
-  std::string path;  ///< preset:NAME, clip:FILE or a path file; empty where way-points are given
-  std::vector<WayPoint> wayPoints = {};  ///< a path drawn in the document itself
-  /// 0: a preset's usual 10 s, else as long as the clip or path takes.
-  double seconds = 10.0;
-  bool startFromClip = false;  ///< clip:FILE only: its first frames start the motion
-  bool followsClip() const { return wayPoints.empty() && path.starts_with("clip:"); }
-  bool operator==(const ExperimentPath&) const = default;
-};
 
 struct Experiment {
   std::string title = "Experiment";
@@ -51,7 +31,9 @@ struct Experiment {
   /// "same-style" (comparison.h).
   std::string against = "all";
   std::filesystem::path folder;  ///< of the document: relative names start there (not stored)
-  bool operator==(const Experiment&) const = default;
+  /// How it was looked at last. Decides no number: it is no part of equality or hash.
+  ViewState view = {};
+  bool operator==(const Experiment& other) const;
 };
 
 /// Strict: unknown keys, wrong types and values out of range throw InputError naming the key.

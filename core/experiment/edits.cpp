@@ -52,7 +52,7 @@ std::string moved(const std::string& source, const fs::path& from, const fs::pat
   if (!isFile(source)) return source;
   const size_t mark = source.starts_with("@") ? 1 : source.starts_with("clip:") ? 5 : 0;
   const fs::path file = source.substr(mark);
-  if (file.is_absolute()) return source;
+  // What lies beside the document moves along with it, however it was named.
   const fs::path whole = fs::absolute(from / file).lexically_normal();
   const fs::path near = whole.lexically_relative(fs::absolute(to).lexically_normal());
   // A way up and down again is harder to read and no more lasting than a whole one.
@@ -70,8 +70,9 @@ std::string freePathName(const Experiment& experiment, const std::string& wanted
   return freeName(experiment.paths, wanted);
 }
 
-size_t addSystem(Experiment& experiment, const std::string& model, const std::string& name) {
-  experiment.systems.push_back({freeSystemName(experiment, name), model, 1.0});
+size_t addSystem(Experiment& experiment, const std::string& model, const std::string& name,
+                 double temperature) {
+  experiment.systems.push_back({freeSystemName(experiment, name), model, temperature});
   return experiment.systems.size() - 1;
 }
 
@@ -120,6 +121,14 @@ void moveToFolder(Experiment& experiment, const fs::path& folder) {
   for (ExperimentSystem& system : experiment.systems)
     system.model = moved(system.model, from, folder);
   for (ExperimentPath& path : experiment.paths) path.path = moved(path.path, from, folder);
+  ViewState& view = experiment.view;
+  if (view.natural)
+    for (ShownClips& shown : *view.natural) shown.source = moved(shown.source, from, folder);
+  for (KeptSet& set : view.sets) {
+    set.system.model = moved(set.system.model, from, folder);
+    set.path.path = moved(set.path.path, from, folder);
+  }
+  view.trainingRun = moved(view.trainingRun, from, folder);
   experiment.folder = folder;
 }
 

@@ -14,7 +14,8 @@ std::string freeSystemName(const Experiment& experiment, const std::string& want
 std::string freePathName(const Experiment& experiment, const std::string& wanted);
 
 /// Adds a model under a free name; returns its index.
-size_t addSystem(Experiment& experiment, const std::string& model, const std::string& name);
+size_t addSystem(Experiment& experiment, const std::string& model, const std::string& name,
+                 double temperature = 1.0);
 /// Adds a path under a free name; returns its index.
 size_t addPath(Experiment& experiment, ExperimentPath path);
 /// Adds sources of natural motion that are not there yet; returns how many were added.
@@ -27,8 +28,8 @@ void removeNatural(Experiment& experiment, const std::string& source);
 /// Sets how long a path is followed; what rounds to 0 means as long as it takes, other values are
 /// raised to the shortest one that a document may hold.
 void setPathSeconds(Experiment& experiment, size_t index, double seconds);
-/// Makes relative file names of the document start at `folder` instead of at its present folder,
-/// so that a document saved elsewhere still finds its files.
+/// Makes the file names of the document fit `folder`, so that a document saved there finds its
+/// files: relative ones where they lie in it or below, which then move along with it, else whole.
 void moveToFolder(Experiment& experiment, const std::filesystem::path& folder);
 /// Whether it names no motion, no system and no path.
 bool isEmpty(const Experiment& experiment);

@@ -4,35 +4,11 @@
 #include <memory>
 #include <vector>
 
+#include "experiment/steering.h"
 #include "model/motion_model.h"
 #include "motion/path.h"
 
 namespace marey {
-
-/// Velocities along the way, and where the body looks while it goes there.
-struct LiveCommand {
-  double forwardMS = 0.0;
-  double sidewaysMS = 0.0;  ///< positive: to the left of the way
-  double turnRadS = 0.0;    ///< of the way and the body; positive: to the left
-  double facingRad = 0.0;   ///< of the body from the way ahead; positive: to the left
-  bool operator==(const LiveCommand&) const = default;
-};
-
-struct LiveOptions {
-  uint64_t seed = 1;
-  int sample = 0;
-  double temperature = 1.0;
-  double warmUpS = 1.0;     ///< generated under `begin` and dropped, as the sampler does
-  double smoothingS = 0.3;  ///< time constant with which the velocity follows the command; 0: none
-  LiveCommand begin = {};   ///< velocity at the start
-  RootFrame start = {};
-};
-
-/// All that a steered motion was made by, besides its model: the same frames come of it again.
-struct Steering {
-  LiveOptions options;
-  std::vector<LiveCommand> commands;  ///< of every frame
-};
 
 /// Deterministic for model, options and the commands. With a constant command equal to `begin` it
 /// is the sampler's motion of that seed and sample along the straight path or circle. Where the

@@ -52,7 +52,9 @@ FeatureSequence sequenceOf(const SampleRequest& request, int sample, Matrix pose
           controlFromTrajectory(request.path), request.path.front()};
 }
 
-/// Along each natural clip's own control. Clips of similar length go together.
+}  // namespace
+
+// Clips of similar length go together.
 void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vector<Clip>& natural,
                    SystemResult& out, Progress& progress, Ranks& ranks) {
   std::vector<SampleRequest> requests;
@@ -94,6 +96,8 @@ void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vec
     }
   }
 }
+
+namespace {
 
 /// The motions of all paths are numbered one after the other, so that few along many paths are
 /// dealt out as well as many along one.

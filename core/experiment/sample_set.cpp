@@ -10,24 +10,6 @@ namespace {
 /// Larger batches gain little and make cancelling slow.
 constexpr int kMostTogether = 64;
 
-/// Commands as runs of equal ones: hands hold keys for many frames.
-Json commandsToJson(const std::vector<LiveCommand>& commands) {
-  Json out = Json::array();
-  for (size_t i = 0; i < commands.size();) {
-    const LiveCommand& c = commands[i];
-    const auto end = std::find_if(commands.begin() + static_cast<std::ptrdiff_t>(i), commands.end(),
-                                  [&](const auto& other) { return other != c; });
-    const auto next = static_cast<size_t>(end - commands.begin());
-    out.push_back({{"frames", next - i},
-                   {"forward_m_s", c.forwardMS},
-                   {"sideways_m_s", c.sidewaysMS},
-                   {"turn_rad_s", c.turnRadS},
-                   {"facing_rad", c.facingRad}});
-    i = next;
-  }
-  return out;
-}
-
 SampleSet drawSteered(const MotionModel& model, const SampleRecipe& recipe, Progress& progress,
                       const MotionSink& sink) {
   SampleSet out{.recipe = recipe, .modelHash = model.info().hash};
@@ -61,21 +43,36 @@ SampleSet drawSteered(const MotionModel& model, const SampleRecipe& recipe, Prog
 }  // namespace
 
 Json toJson(const SampleRecipe& recipe) {
-  Experiment one;
-  one.systems = {recipe.system};
-  one.paths = {recipe.path};
-  const Json document = toJson(one);
-  Json out = {{"system", document["systems"][0]},
-              {"path", document["paths"][0]},
+  Json out = {{"system", toJson(recipe.system)},
+              {"path", toJson(recipe.path)},
               {"samples", recipe.samples},
               {"seed", recipe.seed},
               {"start", recipe.path.startFromClip ? "clip" : "mean"}};
-  if (recipe.steering)
-    out["steering"] = {{"warm_up_s", recipe.steering->options.warmUpS},
-                       {"smoothing_s", recipe.steering->options.smoothingS},
-                       {"sample", recipe.steering->options.sample},
-                       {"commands", commandsToJson(recipe.steering->commands)}};
+  if (recipe.steering) out["steering"] = toJson(*recipe.steering);
+  if (recipe.heldOut) out["held_out"] = true;
   return out;
+}
+
+KeptSet keptSetOf(const SampleRecipe& recipe) {
+  KeptSet out{.system = recipe.system,
+              .path = recipe.path,
+              .samples = recipe.samples,
+              .seed = recipe.seed,
+              .heldOut = recipe.heldOut,
+              .hidden = {}};
+  if (recipe.steering) out.steering = *recipe.steering;
+  return out;
+}
+
+SampleRecipe recipeOf(const KeptSet& set, double fps, const std::filesystem::path& folder) {
+  return {.system = set.system,
+          .path = set.path,
+          .samples = set.samples,
+          .seed = set.seed,
+          .fps = fps,
+          .folder = folder,
+          .steering = set.steering ? std::make_shared<const Steering>(*set.steering) : nullptr,
+          .heldOut = set.heldOut};
 }
 
 SampleRequest requestOf(const MotionModel& model, const SampleRecipe& recipe) {
@@ -94,6 +91,8 @@ SampleRequest requestOf(const MotionModel& model, const SampleRecipe& recipe) {
 SampleSet drawSampleSet(const MotionModel& model, const SampleRecipe& recipe, Progress& progress,
                         int chunk, const MotionSink& sink) {
   if (recipe.steering) return drawSteered(model, recipe, progress, sink);
+  if (recipe.heldOut)
+    throw InputError({.path = recipe.system.name}, "a path", "the control of natural clips");
   SampleRequest request = requestOf(model, recipe);
   SampleSet out{.recipe = recipe, .modelHash = model.info().hash, .wanted = request.path};
   int together = chunk > 0 ? chunk : recipe.samples;

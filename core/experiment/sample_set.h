@@ -25,10 +25,16 @@ struct SampleRecipe {
   std::filesystem::path folder;  ///< relative names start there
   /// Of a steered motion, instead of the path, which only shows where it went.
   std::shared_ptr<const Steering> steering = nullptr;
+  /// Along the control of every natural clip, instead of the path (sampleHeldOut in
+  /// experiment/run.h).
+  bool heldOut = false;
 
   bool operator==(const SampleRecipe&) const = default;
 };
 Json toJson(const SampleRecipe& recipe);
+/// A recipe as a document keeps it, and back; rate and folder are the document's.
+KeptSet keptSetOf(const SampleRecipe& recipe);
+SampleRecipe recipeOf(const KeptSet& set, double fps, const std::filesystem::path& folder);
 
 struct SampledMotion {
   ClipPtr clip;
@@ -50,9 +56,10 @@ using MotionSink =
 /// What the sampler is asked for. Throws UsageError or InputError.
 SampleRequest requestOf(const MotionModel& model, const SampleRecipe& recipe);
 
-/// Draws a recipe; `chunk` motions advance together at first (0: all), then twice as many each time
-/// up to 64, since a large batch is faster, and are handed to `sink`, where there is one. Motions
-/// do not depend on the chunk. Throws UsageError, InputError, NumericError and CancelledError.
+/// Draws a recipe along a path; `chunk` motions advance together at first (0: all), then twice as
+/// many each time up to 64, since a large batch is faster, and are handed to `sink`, where there is
+/// one. Motions do not depend on the chunk. Throws UsageError, InputError, NumericError and
+/// CancelledError.
 SampleSet drawSampleSet(const MotionModel& model, const SampleRecipe& recipe, Progress& progress,
                         int chunk = 0, const MotionSink& sink = {});
 

@@ -9,6 +9,9 @@
 
 namespace marey::report {
 
+/// Bootstrap resamples of its intervals, and of those that are to be the same.
+inline constexpr int kReportResamples = 200;
+
 /// Figures and tables of an experiment. `command` goes into the recipe.
 /// Throws InputError, CancelledError.
 ReportData reportOf(const ExperimentResult& result, const std::string& command, Progress& progress);

@@ -15,7 +15,7 @@
 namespace marey::report {
 namespace {
 
-constexpr int kResamples = 200;
+constexpr int kResamples = kReportResamples;
 
 /// Clips of a set and what they follow, ready for statistics.
 stats::StatisticInput inputOf(const std::vector<Clip>& clips, const std::vector<int>& controls,

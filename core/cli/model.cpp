@@ -8,6 +8,7 @@
 #include "base/npy.h"
 #include "cli/command.h"
 #include "model/conformance.h"
+#include "model/model_card.h"
 #include "moglow/family.h"
 #include "motion/roles.h"
 
@@ -15,7 +16,8 @@ namespace marey::cli {
 namespace {
 
 struct Options {
-  std::string model, config, out, checkpoint, data, vectors, name, stateDict;
+  std::string model, config, out, checkpoint, data, vectors, name, stateDict, card;
+  double temperature = -1.0;  ///< below 0: not given
   bool half = false;
 };
 
@@ -40,11 +42,21 @@ Json infoJson(const ModelInfo& info) {
   return out;
 }
 
+std::string adviceText(const ModelAdvice& advice) {
+  std::string out = advice.temperature
+                        ? fmt::format("recommended temperature: {:g}\n", *advice.temperature)
+                        : "no temperature is recommended\n";
+  if (advice.card.empty()) return out + "no card\n";
+  const std::string from = advice.cardFile.empty() ? "" : " (" + advice.cardFile.string() + ")";
+  return out + "card" + from + ":\n" + advice.card;
+}
+
 void runInfo(const Options& o, const Context& context) {
   if (o.model.empty() == o.config.empty())
     throw UsageError("model info: give a MODEL or --config FILE, not both");
   const ModelInfo info =
       o.config.empty() ? loadModel(o.model, modelFamilies())->info() : describeConfig(o.config);
+  Json json = infoJson(info);
   std::string text = fmt::format(
       "{} {}: {:.2f} M parameters; {} pose and {} control values, context {} frames, look-ahead "
       "{}\n",
@@ -56,8 +68,13 @@ void runInfo(const Options& o, const Context& context) {
                 ? "no standardiser: poses and likelihoods are in standardised units\n"
                 : "with standardiser\n";
     text += "provenance: " + info.provenance.dump(2) + "\n";
+    const ModelAdvice advice = modelAdvice(o.model);
+    text += adviceText(advice);
+    json["recommended"] = Json::object();
+    if (advice.temperature) json["recommended"]["temperature"] = *advice.temperature;
+    json["card"] = advice.card;
   }
-  context.print(infoJson(info), text);
+  context.print(json, text);
 }
 
 void runImport(const Options& o, const Context& context) {
@@ -91,6 +108,9 @@ void runExport(const Options& o, const Context& context) {
     for (auto& [name, tensor] : file.tensors)
       if (name.starts_with("weights/flow.")) tensor = tensor.as(DType::F16);
   if (!o.name.empty()) file.metadata["variant"] = o.name;
+  passAdviceOn(o.model, file.metadata);
+  if (!o.card.empty()) storeAdvice(file.metadata, readFile(o.card, size_t{1} << 20), {});
+  if (o.temperature >= 0.0) storeAdvice(file.metadata, {}, o.temperature);
   writeTensorFile(o.out, file);
   const auto bytes = std::filesystem::file_size(o.out);
   context.print({{"written", o.out}, {"bytes", bytes}},
@@ -137,14 +157,19 @@ void addModelCommand(CLI::App& app, Context& context) {
                      "Which state dict of a checkpoint that holds several: graph, ema, ...");
   import->add_option("--out", o->out, "Model to write")->required();
 
-  auto* exporting =
-      addCommand(*model, context, "export", "Write a model in a smaller or renamed form",
-                 "marey model export runs/small/best.marey --half --out small.marey",
-                 [o, &context] { runExport(*o, context); });
+  auto* exporting = addCommand(*model, context, "export",
+                               "Write a model in a smaller, renamed or documented form",
+                               "marey model export runs/small/best.marey --half --out small.marey",
+                               [o, &context] { runExport(*o, context); });
   exporting->add_option("MODEL", o->model, "Model (.marey)")->required();
   exporting->add_option("--out", o->out, "Model to write")->required();
   exporting->add_flag("--half", o->half, "Store the flow's weights in 16 bits");
   exporting->add_option("--name", o->name, "New name of the model");
+  exporting->add_option("--card", o->card, "Model card (Markdown) to keep in the model");
+  exporting
+      ->add_option("--temperature", o->temperature,
+                   "Temperature to recommend; the window takes it where the model is added")
+      ->check(CLI::NonNegativeNumber);
 
   auto* check = addCommand(*model, context, "check", "Compare a model with reference vectors",
                            "marey model check moglow.marey --vectors vectors.npz",

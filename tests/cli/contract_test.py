@@ -334,6 +334,20 @@ class ModelCommands(SharedModelCase):
         self.assertEqual(mean[0], mean[1])
         self.assertAlmostEqual(mean[0], mean[2], delta=0.5)
 
+    def test_a_model_keeps_its_card_and_its_recommended_temperature(self):
+        self.assertEqual(self.run_json("model", "info", self.model)["card"], "")
+        card = self.dir / "card.md"
+        card.write_text("# Tiny\nWalks.\n")
+        out = self.dir / "carded.marey"
+        self.run_json("model", "export", self.model, "--out", out, "--card", card,
+                      "--temperature", "0.75")
+        again = self.dir / "again.marey"
+        self.run_json("model", "export", out, "--half", "--out", again)
+        for model in (out, again):
+            info = self.run_json("model", "info", model)
+            self.assertEqual(info["card"], "# Tiny\nWalks.\n")
+            self.assertEqual(info["recommended"], {"temperature": 0.75})
+
     def test_report_runs_an_experiment(self):
         experiment = {"title": "Small", "natural": [str(self.clips)],
                       "systems": [{"name": "tiny", "model": str(self.model)}],

@@ -9,6 +9,7 @@
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "model/batches.h"
+#include "model/kept_checkpoints.h"
 #include "model/optimiser.h"
 #include "model/run_files.h"
 #include "model/training_pace.h"
@@ -136,6 +137,7 @@ class Run {
     Json training = toJson(m_config);
     training.erase("steps");       // a run may be prolonged
     training.erase("accumulate");  // and go on where there is less memory
+    training.erase("keep");        // or disk
     return {{"data", m_data.hash},
             {"seed", m_request.seed},
             {"training", training},
@@ -284,6 +286,7 @@ class Run {
       writeFileAtomically(
           m_request.run / "snapshots" / fmt::format("step_{:07}.marey", m_state.step), model);
     }
+    keepCheckpoint(m_request.run, m_config, m_state.step, model);
     const double count = std::max<double>(1.0, static_cast<double>(m_lossCount));
     appendLog(m_request.run,
               {m_state.step, m_state.seconds, learningRateAt(m_config, m_state.step - 1),

@@ -39,7 +39,8 @@ struct TrainResult {
 };
 
 /// Writes into the run's folder: config.json, log.csv, last.marey (model), best.marey (by
-/// validation), state.marey (optimiser and counters), snapshots/. Resuming needs the same data
+/// validation), state.marey (optimiser and counters), checkpoints/ (the last `training.keep` of an
+/// even spread, their figures in log.csv), snapshots/ (kept for good). Resuming needs the same data
 /// and configuration, and then gives the same batches and numbers as an unbroken run.
 /// Throws InputError (also for data that are not finite), FileError, CancelledError (after writing
 /// a checkpoint) and NumericError naming the layer after five non-finite steps in a row.

@@ -34,6 +34,7 @@ TrainingConfig trainingConfigFromJson(const Json& value, const std::string& orig
   c.checkpointEvery = reader.optional("checkpoint_every", c.checkpointEvery);
   c.validationShare = reader.optional("validation_share", c.validationShare);
   c.snapshotMinutes = reader.optional("snapshot_minutes", c.snapshotMinutes);
+  c.keep = reader.optional("keep", c.keep);
   c.useReversed = reader.optional("use_reversed", c.useReversed);
   reader.finish();
   require(c.windowS > 0, reader, "window_s", "seconds above zero", c.windowS);
@@ -51,6 +52,7 @@ TrainingConfig trainingConfigFromJson(const Json& value, const std::string& orig
           static_cast<double>(c.checkpointEvery));
   require(c.validationShare >= 0 && c.validationShare < 1, reader, "validation_share",
           "a share in [0, 1)", c.validationShare);
+  require(c.keep >= 0, reader, "keep", "at least 0", c.keep);
   if (c.schedule != "fixed" && c.schedule != "noam" && c.schedule != "cosine")
     throw InputError(reader.place("schedule"), "fixed, noam or cosine", "'" + c.schedule + "'");
   return c;
@@ -72,6 +74,7 @@ Json toJson(const TrainingConfig& c) {
           {"checkpoint_every", c.checkpointEvery},
           {"validation_share", c.validationShare},
           {"snapshot_minutes", c.snapshotMinutes},
+          {"keep", c.keep},
           {"use_reversed", c.useReversed}};
 }
 

@@ -22,6 +22,7 @@ struct TrainingConfig {
   int64_t checkpointEvery = 100;             ///< steps between checkpoints (and validations)
   double validationShare = 0.05;             ///< of the training clips, left out of training
   double snapshotMinutes = 10.0;             ///< a checkpoint is kept for good this often; 0: never
+  int keep = 8;             ///< checkpoints kept evenly over the run, to be compared; 0: none
   bool useReversed = true;  ///< train on time-reversed clips too, where the data has them
 };
 TrainingConfig trainingConfigFromJson(const Json& value, const std::string& origin);

@@ -54,11 +54,16 @@ double judged(const LossRow& row) {
 TrainingRun readTrainingRun(const fs::path& folder) {
   TrainingRun out{.rows = readLog(folder / "log.csv"), .checkpoints = {}};
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder / "snapshots", none))
-    if (const auto step = stepOf(entry.path()))
-      out.checkpoints.push_back({"step " + std::to_string(*step), entry.path().string(), *step});
-  std::sort(out.checkpoints.begin(), out.checkpoints.end(),
-            [](const Checkpoint& a, const Checkpoint& b) { return a.step < b.step; });
+  for (const char* kept : {"checkpoints", "snapshots"})
+    for (const auto& entry : fs::directory_iterator(folder / kept, none))
+      if (const auto step = stepOf(entry.path()))
+        out.checkpoints.push_back({"step " + std::to_string(*step), entry.path().string(), *step});
+  std::stable_sort(out.checkpoints.begin(), out.checkpoints.end(),
+                   [](const Checkpoint& a, const Checkpoint& b) { return a.step < b.step; });
+  // A step may be kept in both folders.
+  const auto last = std::unique(out.checkpoints.begin(), out.checkpoints.end(),
+                                [](const auto& a, const auto& b) { return a.step == b.step; });
+  out.checkpoints.erase(last, out.checkpoints.end());
   if (out.rows.empty()) return out;
   const auto best =
       std::min_element(out.rows.begin(), out.rows.end(),

@@ -189,15 +189,17 @@ TEST_F(PanelFiles, ATrainingRunIsReadFromItsFolder) {
                       "test_bits_per_frame,gradient_norm,skipped\n"
                       "100,60.0,0.001,-10,-12,nan,5,0\n200,120.0,0.001,-20,-30,-25,5,0\n"
                       "300,180.0,0.001,-22,-28,-25,5,0\n");
-  for (const char* name : {"best.marey", "last.marey", "snapshots/step_0000200.marey"})
+  for (const char* name : {"best.marey", "last.marey", "snapshots/step_0000200.marey",
+                           "checkpoints/step_0000100.marey", "checkpoints/step_0000200.marey"})
     writeFileAtomically(m_folder / name, "x");
   const TrainingRun run = readTrainingRun(m_folder);
   ASSERT_EQ(run.rows.size(), 3u);
   EXPECT_TRUE(std::isnan(run.rows[0].test));
-  ASSERT_EQ(run.checkpoints.size(), 3u);
-  EXPECT_EQ(run.checkpoints[0].name, "step 200");
-  EXPECT_EQ(run.checkpoints[1].name, "best (step 200)");
-  EXPECT_EQ(run.checkpoints[2].name, "last (step 300)");
+  ASSERT_EQ(run.checkpoints.size(), 4u) << "a step that is kept twice is one";
+  EXPECT_EQ(run.checkpoints[0].name, "step 100");
+  EXPECT_EQ(run.checkpoints[1].name, "step 200");
+  EXPECT_EQ(run.checkpoints[2].name, "best (step 200)");
+  EXPECT_EQ(run.checkpoints[3].name, "last (step 300)");
   writeFileAtomically(m_folder / "log.csv", "step,seconds,\n1,2\n");
   EXPECT_THROW(readTrainingRun(m_folder), InputError);
 }

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "model/kept_checkpoints.h"
 #include "model/training_pace.h"
 
 namespace marey {
@@ -185,6 +186,51 @@ TEST(Trainer, ABrokenAndResumedRunIsTheSameAsAnUnbrokenOne) {
   EXPECT_EQ(logRows(folder / "whole").size(), 3u);  // header and two checkpoints
   EXPECT_EQ(whole.validBitsPerFrame, resumed.validBitsPerFrame);
   EXPECT_EQ(whole.testNatsPerFrame, resumed.testNatsPerFrame);
+}
+
+std::vector<std::string> keptFiles(const std::filesystem::path& run) {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(run / "checkpoints"))
+    out.push_back(entry.path().filename().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+TEST(KeptCheckpoints, AreEvenlySpreadAndNeverMoreThanAskedFor) {
+  for (const int keep : {1, 2, 3, 8})
+    for (int64_t count = 1; count <= 300; ++count) {
+      const int64_t kept = count / keptEvery(count, keep);
+      EXPECT_LE(kept, keep) << count;
+      EXPECT_GE(2 * kept, std::min<int64_t>(keep, count)) << count << " thinned too much";
+    }
+}
+
+TEST(KeptCheckpoints, OfALongerRunAreThinnedAndThoseOfAResumedRunAreTheSame) {
+  const TempFolder folder;
+  TrainRequest whole = test::tinyRequest(folder / "whole");
+  whole.config["training"]["checkpoint_every"] = 1;
+  whole.config["training"]["keep"] = 3;
+  TrainRequest broken = whole;
+  broken.run = folder / "broken";
+  test::trainTiny(whole);
+  EXPECT_EQ(
+      keptFiles(whole.run),
+      (std::vector<std::string>{"step_0000002.marey", "step_0000004.marey", "step_0000006.marey"}));
+  broken.steps = 3;
+  test::trainTiny(broken);
+  EXPECT_EQ(
+      keptFiles(broken.run),
+      (std::vector<std::string>{"step_0000001.marey", "step_0000002.marey", "step_0000003.marey"}));
+  broken.steps.reset();
+  broken.resume = true;
+  test::trainTiny(broken);
+  EXPECT_EQ(keptFiles(broken.run), keptFiles(whole.run));
+  // Each is the model of its step, with its figures.
+  const auto kept =
+      loadModel((whole.run / "checkpoints/step_0000004.marey").string(), test::families());
+  EXPECT_EQ(kept->info().provenance["steps"], 4);
+  EXPECT_TRUE(std::isfinite(kept->info().provenance["valid_nats_per_frame"].get<double>()));
+  EXPECT_EQ(logRows(whole.run).size(), 7u) << "figures of every checkpoint";
 }
 
 TEST(Trainer, TrainingMakesTheDataMoreLikely) {

@@ -111,7 +111,9 @@ LinkedGrid diversityGrid(const std::vector<DiversityCurve>& curves) {
   out.grid.charts.push_back({});
   render::Chart& counts = out.grid.charts.back();
   counts.x = {.label = "time", .unit = "s"};
-  counts.y = {.label = "motions compared"};
+  int most = 1;
+  for (const DiversityCurve& curve : curves) most = std::max(most, curve.compared);
+  counts.y = {.label = "motions compared", .range = std::pair{0.0, 1.1 * most}};
   counts.legend = render::LegendPlace::None;
   for (const DiversityCurve& curve : curves)
     out.add(curve.look.line(framesInSeconds(curve.pairs.motions.size(), curve.fps),

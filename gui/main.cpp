@@ -13,6 +13,8 @@
 #include "shell/no_display.h"
 #include "shell/start_time.h"
 
+#include "base/error.h"
+#include "nn/kernels/kernels.h"
 #include "nn/threads.h"
 
 namespace marey::gui {
@@ -95,6 +97,12 @@ int main(int argc, char** argv) {
   QCoreApplication::setOrganizationName(QStringLiteral("Marey"));
   QCoreApplication::setApplicationName(QStringLiteral("Marey"));
   QCoreApplication::setApplicationVersion(QStringLiteral(MAREY_VERSION));
+  try {
+    marey::nn::kernels();  // MAREY_ISA is wrong from the start or not at all
+  } catch (const marey::UsageError& e) {
+    std::fprintf(stderr, "marey-workbench: %s\n", e.what());
+    return marey::gui::kWrongUsage;
+  }
   marey::gui::answerQuestions(argc, argv);
   return marey::gui::run(argc, argv);
 }

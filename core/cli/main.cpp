@@ -2,12 +2,15 @@
 // exit codes (0 done, 1 failed, 2 wrong usage).
 #include <cstdio>
 #include <exception>
+#include <optional>
 
 #include "ranks/launch.h"
 #include <fmt/format.h>
 
 #include "base/process_rank.h"
 #include "cli/command.h"
+#include "cli/near_miss.h"
+#include "nn/kernels/kernels.h"
 #include "nn/threads.h"
 
 namespace {
@@ -87,6 +90,24 @@ std::string joined(int argc, char** argv) {
   return out;
 }
 
+/// What the command line says, into `context`; the exit status where that is all there is to do.
+std::optional<int> parse(CLI::App& app, const Context& context, int argc, char** argv) {
+  try {
+    // Before help is given: help for a command that does not exist would be help for another.
+    requireKnownCommand(app, {argv + 1, argv + argc});
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const marey::UsageError& e) {
+    return fail(context, 2, e.what());
+  } catch (const CLI::ParseError& e) {
+    if (isSilent(context)) return 0;
+    const int status = app.exit(e) == 0 ? 0 : 2;
+    if (const std::string near = nearestOptions(app); status != 0 && !near.empty())
+      fmt::print(stderr, "{}\n", near);
+    return status;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -97,11 +118,11 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   addCommands(app, context);
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    if (isSilent(context)) return 0;
-    return app.exit(e) == 0 ? 0 : 2;
+    marey::nn::kernels();  // MAREY_ISA is wrong from the start or not at all
+  } catch (const marey::UsageError& e) {
+    return fail(context, 2, e.what());
   }
+  if (const auto done = parse(app, context, argc, argv)) return *done;
   const int status = runCommand(context);
   context.ranks.reset();  // after all that there was to say: the other processes end with this
   return status;

@@ -4,16 +4,10 @@
 #include <cmath>
 #include <functional>
 
+#include "moglow/base_constants.h"
+
 namespace marey::moglow {
 namespace {
-
-constexpr double kShortest = 0.1;     ///< cm; a shorter bone has no direction of its own
-constexpr double kStraight = 0.9999;  ///< of full reach: a straighter knee has no side
-/// Share of its bone's error that a foot held fast keeps from one frame to the next.
-constexpr double kBoneMemory = 0.98;
-constexpr double kTail = 4.0;     ///< scales beyond which legs' errors are squeezed
-constexpr double kFinest = 0.02;  ///< cm, smallest scale of those errors
-constexpr double kResting = 0.2;  ///< cm: a foot that goes further from its gate's centre leaves
 
 /// Present positions [N, 3] of joints that are known already.
 using Present = std::function<torch::Tensor(int64_t)>;

@@ -1,11 +1,11 @@
-// MoGlow behind the MotionModel interface, on the flow engine. A base below the flow stays in
-// libtorch, in blocks whose results do not depend on batch or threads.
+// MoGlow behind the MotionModel interface, on the flow engine, with the base below it where there
+// is one. No libtorch type appears here.
 #pragma once
 
 #include <memory>
 
 #include "model/motion_model.h"
-#include "moglow/base_blocks.h"
+#include "moglow/engine_base.h"
 #include "moglow/flow_engine.h"
 
 namespace marey::moglow {
@@ -14,8 +14,9 @@ class EngineModel : public MotionModel {
  public:
   /// `file` holds the checked weights; the flow's large ones are kept packed only. `base`: null
   /// without one. Throws InputError for a singular linear layer.
-  EngineModel(ModelInfo info, const Config& config, TensorFile file, std::shared_ptr<PoseBase> base,
-              nn::Precision precision, const std::string& origin);
+  EngineModel(ModelInfo info, const Config& config, TensorFile file,
+              std::unique_ptr<const EngineBase> base, nn::Precision precision,
+              const std::string& origin);
   ~EngineModel() override;
 
   const ModelInfo& info() const override { return m_info; }
@@ -46,7 +47,7 @@ class EngineModel : public MotionModel {
   Standardiser m_units;  ///< zeros and ones where the model has none
   TensorFile m_kept;     ///< everything but what is packed
   FlowEngine m_flow;
-  std::unique_ptr<const BaseBlocks> m_base;
+  std::unique_ptr<const EngineBase> m_base;
 };
 
 }  // namespace marey::moglow

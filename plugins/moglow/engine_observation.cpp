@@ -64,6 +64,7 @@ class EngineModel::Observation {
   std::vector<SequenceScore> m_scores;
   // A piece's rows: history, control, poses, what the nets see of a base, innovations.
   nn::AlignedFloats m_history, m_control, m_poses, m_features, m_innovation;
+  std::vector<RowForesight> m_foreseen;
   std::vector<double> m_baseLogDet;
   FlowEngine::Sequences m_sequences;
 };
@@ -135,10 +136,10 @@ void EngineModel::Observation::seeBase(long rows) {
   m_features.reserve(rows * features);
   m_innovation.reserve(rows * d);
   m_baseLogDet.resize(static_cast<size_t>(rows));
-  const auto seen =
-      m_model.m_base->foresee(rows, m_history.data(), m_model.historyWidth(), m_control.data(),
-                              m_model.controlWidth(), m_features.data(), features);
-  m_model.m_base->toInnovation(seen, m_poses.data(), m_innovation.data(), d, m_baseLogDet.data());
+  m_model.m_base->foresee(rows, m_history.data(), m_control.data(), m_features.data(), features,
+                          m_foreseen);
+  m_model.m_base->toInnovation(m_foreseen, m_poses.data(), m_innovation.data(),
+                               m_baseLogDet.data());
   for (long row = 0; row < rows; ++row) {
     const float* e = m_innovation.data() + row * d;
     std::copy(e, e + passed, m_features.data() + (row + 1) * features - passed);

@@ -11,13 +11,10 @@
 //   e.k)).
 #pragma once
 
+#include "moglow/base_constants.h"
 #include "nn/torch.h"
 
 namespace marey::moglow {
-
-/// Radial quantiles are kept at rho = kGateStep, 2 kGateStep, ..., kGateKnots * kGateStep.
-constexpr int kGateKnots = 9;
-constexpr double kGateStep = 0.5;
 
 /// The gates of N places.
 struct Gate {

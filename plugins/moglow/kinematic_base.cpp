@@ -5,14 +5,12 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "moglow/base_constants.h"
 
 namespace marey::moglow {
 namespace {
 
 using torch::indexing::Slice;
-
-constexpr int64_t kFootFeatures = 19;
-constexpr double kStretch = 3.0;  ///< cm out of reach that a held foot stands
 
 /// Turns the floor coordinates of joints [N, K, J, 3] into a root frame that moved by (sideways,
 /// forward) and then turned, control [N, 3].

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "moglow/body_facts.h"
 #include "moglow/config.h"
 #include "nn/torch.h"
 
@@ -21,14 +22,6 @@ struct BaseInput {
 struct Foresight {
   torch::Tensor features;            ///< [N, F]: what the coupling nets see
   std::vector<torch::Tensor> parts;  ///< the base's own
-};
-
-/// What a base must know of the data besides its widths.
-struct BodyFacts {
-  std::vector<int> parents;  ///< of the joints; empty where unknown
-  std::vector<int> feet;     ///< contact joints, left ones first
-  std::vector<int> toes;     ///< beside each foot: its child, else its parent
-  std::vector<float> poseMean, poseStd, controlMean, controlStd;
 };
 
 class PoseBase : public torch::nn::Module {

@@ -40,17 +40,17 @@ void checkFlow(const Config& config, const TensorFile& file, const std::string& 
                        "only tensors that the model has", "an extra one");
 }
 
-std::shared_ptr<PoseBase> loadBase(const Config& config, const BodyFacts& body,
-                                   const TensorFile& file, const std::string& origin) {
-  auto base = makePoseBase(config, body);
-  if (!base) return nullptr;
+std::unique_ptr<const EngineBase> loadBase(const Config& config, const BodyFacts& body,
+                                           const TensorFile& file, const std::string& origin) {
+  const auto plain = makePoseBase(config, body);
+  if (!plain) return nullptr;
+  // The plain path's names and shapes are those that have to be there.
   TensorFile own;
   for (const auto& [key, tensor] : file.tensors)
     if (key.starts_with(kBase)) own.tensors[key] = tensor;
-  BaseHolder holder(base);
+  BaseHolder holder(plain);
   loadWeights(holder, own, origin);
-  base->eval();
-  return base;
+  return makeEngineBase(config, body, file);
 }
 
 }  // namespace marey::moglow

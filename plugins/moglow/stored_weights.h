@@ -6,6 +6,7 @@
 
 #include "base/tensor_file.h"
 #include "moglow/config.h"
+#include "moglow/engine_base.h"
 #include "moglow/pose_base.h"
 
 namespace marey::moglow {
@@ -14,8 +15,8 @@ namespace marey::moglow {
 /// finite, or when there is one that the model does not have.
 void checkFlow(const Config& config, const TensorFile& file, const std::string& origin);
 
-/// The base with its stored tensors; null for configurations without one. As strict.
-std::shared_ptr<PoseBase> loadBase(const Config& config, const BodyFacts& body,
-                                   const TensorFile& file, const std::string& origin);
+/// The engine's base with its stored tensors; null for configurations without one. As strict.
+std::unique_ptr<const EngineBase> loadBase(const Config& config, const BodyFacts& body,
+                                           const TensorFile& file, const std::string& origin);
 
 }  // namespace marey::moglow

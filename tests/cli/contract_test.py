@@ -59,6 +59,32 @@ class Usage(Case):
             with self.subTest(words=words):
                 self.assert_refused(words, status=2, cwd=self.dir)
 
+    def test_an_unknown_command_names_the_nearest_even_where_help_is_asked_for(self):
+        for words, wrong, near in (
+                (["skore", "--help"], "skore", "score"), (["--help", "skore"], "skore", "score"),
+                (["skore"], "skore", "score"), (["bnech", "sample", "--help"], "bnech", "bench"),
+                (["model", "chekc", "--help"], "model chekc", "model check"),
+                (["model", "--quiet", "inof"], "model inof", "model info"),
+                (["bench", "-h", "scroe"], "bench scroe", "bench score")):
+            with self.subTest(words=words):
+                self.assert_refused(words, f"unknown command '{wrong}'; did you mean '{near}'?",
+                                    status=2)
+
+    def test_an_unknown_option_names_the_nearest(self):
+        text = self.assert_refused(
+            ["sample", "m.marey", "--path", "preset:still", "--out", "s", "--temprature=2"],
+            "did you mean '--temperature'?", status=2)
+        self.assertIn("'--temprature'", text)
+
+    def test_a_kernel_set_that_is_not_here_is_refused_at_the_start(self):
+        for words in (["--version"], ["doctor", "absent.bvh"], ["bench", "sample", "--help"]):
+            done = marey(*words, env={"MAREY_ISA": "avx1024"})
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(done.stdout, "")
+            self.assertRegex(done.stderr, r"MAREY_ISA: expected a kernel set of this machine "
+                                          r"\((\w+, )*generic\), found 'avx1024'")
+        self.assertEqual(marey("--version", env={"MAREY_ISA": "generic"}).returncode, 0)
+
     def test_a_failure_prints_one_line_on_stderr_and_no_json(self):
         for words in (["analyze", "absent.bvh", "--json"], ["doctor", "absent.bvh", "--json"],
                       ["score", "absent.marey", "absent.bvh", "--json"]):

@@ -1,6 +1,10 @@
 #include "nn/kernels/kernels.h"
 
-#include <initializer_list>
+#include <array>
+#include <cstdlib>
+#include <string_view>
+
+#include "base/error.h"
 
 namespace marey::nn {
 
@@ -19,13 +23,34 @@ const Kernels* kernelsFor(Isa isa) {
   return isa == Isa::Generic ? &kGenericKernels : nullptr;
 }
 
+namespace {
+
+constexpr std::array kBestFirst = {Isa::Avx512, Isa::Avx2, Isa::Generic};
+
+const Kernels& kernelsOfName(std::string_view wanted) {
+  std::string here;
+  for (const Isa isa : kBestFirst) {
+    const Kernels* found = kernelsFor(isa);
+    if (found == nullptr) continue;
+    if (found->name == wanted) return *found;
+    here += (here.empty() ? "" : ", ") + std::string(found->name);
+  }
+  throw UsageError(fmt::format("MAREY_ISA: expected a kernel set of this machine ({}), found '{}'",
+                               here, wanted));
+}
+
+const Kernels& chosenKernels() {
+  if (const char* wanted = std::getenv("MAREY_ISA")) return kernelsOfName(wanted);
+  for (const Isa isa : kBestFirst)
+    if (const Kernels* found = kernelsFor(isa)) return *found;
+  return kGenericKernels;
+}
+
+}  // namespace
+
 const Kernels& kernels() {
-  static const Kernels& best = [] {
-    for (const Isa isa : {Isa::Avx512, Isa::Avx2})
-      if (const Kernels* found = kernelsFor(isa)) return *found;
-    return kGenericKernels;
-  }();
-  return best;
+  static const Kernels& chosen = chosenKernels();
+  return chosen;
 }
 
 }  // namespace marey::nn

@@ -5,7 +5,8 @@
 // on how many rows are given, where a row stands among them or which thread runs it. Products add
 // each output up in one chain over the inputs, in their order; general BLAS libraries choose
 // another order for another shape. Avx2 and Avx512 use the same operations in the same order and
-// give the same bits; Generic has no fused multiply-add and gives others.
+// give the same bits; Generic has no fused multiply-add and gives others. Products in double
+// precision (rowProduct) are the same bits on all of them.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +19,8 @@ enum class Isa { Generic, Avx2, Avx512 };
 constexpr long kPanel = 32;
 /// Lanes of a vector; recurrent units and flow channels go in blocks of this many.
 constexpr long kLanes = 16;
+/// Columns of a product in double precision go in blocks of this many.
+constexpr long kRowColumns = 4;
 
 /// A run of `count` consecutive inputs of every row.
 struct Inputs {
@@ -40,6 +43,16 @@ struct PanelProduct {
   float* out = nullptr;
   long outStride = 0;
   long rows = 0;  ///< none is allowed: a member of a team may have no share
+};
+
+/// out[j] += sum over k of x[k] * weights[k][j], in the order of k, in double precision. Every
+/// product is rounded before it is added: one result on all sets.
+struct RowProduct {
+  const double* x = nullptr;
+  long inputs = 0;
+  const float* weights = nullptr;  ///< [inputs, columns]
+  long columns = 0;                ///< a multiple of kRowColumns
+  double* out = nullptr;           ///< [columns]
 };
 
 /// A block of `kLanes` recurrent units. Gates [rows, 64] in four groups of 16: LSTM i, f, g, o;
@@ -102,6 +115,7 @@ struct Kernels {
   const char* name;
   void (*product)(const PanelProduct&);
   void (*productBf16)(const PanelProduct&);
+  void (*rowProduct)(const RowProduct&);
   void (*lstm)(const GateBlock&);
   void (*gru)(const GateBlock&);
   void (*relu)(float* values, long stride, long rows);  ///< [rows, 32] in place
@@ -118,7 +132,9 @@ struct Kernels {
   void (*adam)(const AdamStep&);
 };
 
-/// The best set that this processor runs.
+/// The set that MAREY_ISA names (generic, avx2 or avx512), else the best that this processor runs;
+/// chosen once. Throws UsageError, which names what this machine has, for one that it has not:
+/// programs ask for it before anything else.
 const Kernels& kernels();
 /// One particular set, for tests; null where this build or processor lacks it.
 const Kernels* kernelsFor(Isa isa);

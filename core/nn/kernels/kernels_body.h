@@ -12,7 +12,9 @@ using marey::nn::GateBlock;
 using marey::nn::Inputs;
 using marey::nn::kLanes;
 using marey::nn::kPanel;
+using marey::nn::kRowColumns;
 using marey::nn::PanelProduct;
+using marey::nn::RowProduct;
 
 // ---- Products
 
@@ -149,6 +151,37 @@ void product(const PanelProduct& p) {
   }
 }
 
+// ---- Products in double precision
+
+// Four numbers, in as many registers as the instruction set needs for them.
+using Floats = float __attribute__((vector_size(16)));
+using Doubles = double __attribute__((vector_size(32)));
+
+/// Columns `first` .. of a row's product, 4 * `Blocks` of them.
+template <int Blocks>
+void rowColumns(const RowProduct& p, long first) {
+  Doubles sums[Blocks];
+  __builtin_memcpy(sums, p.out + first, sizeof(sums));
+  for (long k = 0; k < p.inputs; ++k) {
+    const double x = p.x[k];
+    const float* row = p.weights + k * p.columns + first;
+#pragma GCC unroll 8
+    for (int b = 0; b < Blocks; ++b) {
+      Floats w;
+      __builtin_memcpy(&w, row + b * kRowColumns, sizeof(w));
+      sums[b] += x * __builtin_convertvector(w, Doubles);
+    }
+  }
+  __builtin_memcpy(p.out + first, sums, sizeof(sums));
+}
+
+void rowProduct(const RowProduct& p) {
+  long at = 0;
+  for (; at + 8 * kRowColumns <= p.columns; at += 8 * kRowColumns) rowColumns<8>(p, at);
+  for (; at + 4 * kRowColumns <= p.columns; at += 4 * kRowColumns) rowColumns<4>(p, at);
+  for (; at < p.columns; at += kRowColumns) rowColumns<1>(p, at);
+}
+
 // ---- Non-linearities
 
 struct Reduced {
@@ -267,6 +300,7 @@ constexpr marey::nn::Kernels kernelsNamed(const char* name) {
   return {name,
           product<FloatWeights>,
           product<Bf16Weights>,
+          rowProduct,
           lstm,
           gru,
           relu,

@@ -61,8 +61,9 @@ struct ObservedSequence {
 };
 
 /// How a model computes. The engine's results are the same bits for any batch and thread count on
-/// one machine; the reference is the family's plain libtorch path, which it is tested against.
-enum class Execution { Engine, Reference };
+/// one machine; the reference is the family's plain libtorch path, which it is tested against;
+/// exact is the reference in double precision, the truth of those tests.
+enum class Execution { Engine, Reference, Exact };
 /// How the engine keeps weights: in 16 bits (bfloat16) they take half the memory and half the time
 /// to read, which is what bounds a single motion; results then differ from the model's own.
 enum class WeightPrecision { Float32, BFloat16 };

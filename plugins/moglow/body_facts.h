@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "model/motion_model.h"
+
 namespace marey::moglow {
 
 struct BodyFacts {
@@ -11,5 +13,8 @@ struct BodyFacts {
   std::vector<int> toes;     ///< beside each foot: its child, else its parent
   std::vector<float> poseMean, poseStd, controlMean, controlStd;
 };
+
+/// `skeleton`: null where a model has none.
+BodyFacts bodyFacts(const Skeleton* skeleton, const Standardiser& standardiser);
 
 }  // namespace marey::moglow

@@ -6,7 +6,6 @@
 #include "moglow/engine_model.h"
 #include "moglow/reference_model.h"
 #include "moglow/stored_weights.h"
-#include "motion/roles.h"
 
 namespace marey::moglow {
 namespace {
@@ -50,22 +49,6 @@ ModelInfo completed(ModelInfo info, const Config& config) {
   return info;
 }
 
-BodyFacts bodyFacts(const Skeleton* skeleton, const Standardiser& s) {
-  BodyFacts out{.poseMean = s.poseMean,
-                .poseStd = s.poseStd,
-                .controlMean = s.controlMean,
-                .controlStd = s.controlStd};
-  if (skeleton == nullptr) return out;
-  out.parents = skeleton->parents;
-  out.feet = rolesOf(*skeleton).feet;
-  for (const int foot : out.feet) {
-    const auto child = std::find(out.parents.begin(), out.parents.end(), foot);
-    out.toes.push_back(child == out.parents.end() ? out.parents[static_cast<size_t>(foot)]
-                                                  : static_cast<int>(child - out.parents.begin()));
-  }
-  return out;
-}
-
 std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
                                   const LoadOptions& options) {
   ModelInfo info = loadCommon(file, origin);
@@ -74,10 +57,12 @@ std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
     throwInput({.path = origin}, "a configuration of the stored dimensions", "{}/{} beside {}/{}",
                config.poseDim, config.controlDim, info.poseDim, info.controlDim);
   const BodyFacts body = bodyFacts(info.skeleton.get(), info.standardiser);
-  if (options.execution == Execution::Reference) {
+  if (options.execution != Execution::Engine) {
     auto net = std::make_shared<Net>(config, body, 0);
     loadWeights(*net, file, origin);
-    return std::make_unique<ReferenceModel>(completed(std::move(info), config), std::move(net));
+    const auto type = options.execution == Execution::Exact ? torch::kFloat64 : torch::kFloat32;
+    return std::make_unique<ReferenceModel>(completed(std::move(info), config), std::move(net),
+                                            type);
   }
   checkFlow(config, file, origin);
   auto base = loadBase(config, body, file, origin);

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/error.h"
 #include "model/weights.h"
 
 namespace marey::moglow {
@@ -14,12 +15,8 @@ struct Rollout {
   nn::FlowState flow;
 };
 
-torch::Tensor toTensor(const Matrix& m) {
-  return torch::from_blob(const_cast<float*>(m.data()), {m.rows(), m.cols()}).clone();
-}
-
 Matrix toMatrix(const torch::Tensor& t) {
-  const auto rows = t.contiguous();
+  const auto rows = t.to(torch::kFloat32).contiguous();
   return Eigen::Map<const Matrix>(rows.data_ptr<float>(), rows.size(0), rows.size(1));
 }
 
@@ -29,14 +26,21 @@ torch::Tensor vectorOr(const std::vector<float>& values, int size, float fallbac
 
 }  // namespace
 
-ReferenceModel::ReferenceModel(ModelInfo info, std::shared_ptr<Net> net)
-    : m_info(std::move(info)), m_net(std::move(net)) {
+ReferenceModel::ReferenceModel(ModelInfo info, std::shared_ptr<Net> net, torch::ScalarType type)
+    : m_info(std::move(info)), m_net(std::move(net)), m_type(type) {
   m_net->eval();
+  m_net->to(type);
   const auto& s = m_info.standardiser;
-  m_poseMean = vectorOr(s.poseMean, m_info.poseDim, 0.f);
-  m_poseStd = vectorOr(s.poseStd, m_info.poseDim, 1.f);
-  m_controlMean = vectorOr(s.controlMean, m_info.controlDim, 0.f);
-  m_controlStd = vectorOr(s.controlStd, m_info.controlDim, 1.f);
+  m_poseMean = vectorOr(s.poseMean, m_info.poseDim, 0.f).to(type);
+  m_poseStd = vectorOr(s.poseStd, m_info.poseDim, 1.f).to(type);
+  m_controlMean = vectorOr(s.controlMean, m_info.controlDim, 0.f).to(type);
+  m_controlStd = vectorOr(s.controlStd, m_info.controlDim, 1.f).to(type);
+}
+
+/// A copy.
+torch::Tensor ReferenceModel::toTensor(const Matrix& m) const {
+  return torch::from_blob(const_cast<float*>(m.data()), {m.rows(), m.cols()})
+      .to(m_type, /*non_blocking=*/false, /*copy=*/true);
 }
 
 RolloutState ReferenceModel::start(int batch, const Matrix& history) const {
@@ -44,7 +48,7 @@ RolloutState ReferenceModel::start(int batch, const Matrix& history) const {
   const int64_t tau = m_info.context, d = m_info.poseDim;
   Rollout out;
   out.history = history.rows() == 0
-                    ? torch::zeros({batch, tau, d})
+                    ? torch::zeros({batch, tau, d}, m_type)
                     : (toTensor(history).view({batch, tau, d}) - m_poseMean) / m_poseStd;
   return {out};
 }
@@ -81,6 +85,8 @@ SequenceScore ReferenceModel::observe(RolloutState& state, const Matrix& poses,
 }
 
 TensorFile ReferenceModel::save() const {
+  if (m_type != torch::kFloat32)
+    throw InputError({.path = m_info.variant}, "weights as they are stored", "doubles");
   TensorFile file;
   storeCommon(m_info, file);
   storeWeights(*m_net, file);

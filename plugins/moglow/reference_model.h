@@ -1,5 +1,5 @@
 // MoGlow behind the MotionModel interface, on libtorch: the plain path that the engine is tested
-// and measured against.
+// and measured against, in float32 or in double precision.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,8 @@ namespace marey::moglow {
 
 class ReferenceModel : public MotionModel {
  public:
-  ReferenceModel(ModelInfo info, std::shared_ptr<Net> net);
+  ReferenceModel(ModelInfo info, std::shared_ptr<Net> net,
+                 torch::ScalarType type = torch::kFloat32);
   const ModelInfo& info() const override { return m_info; }
   RolloutState start(int batch, const Matrix& history) const override;
   Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,
@@ -22,8 +23,11 @@ class ReferenceModel : public MotionModel {
   TensorFile save() const override;
 
  private:
+  torch::Tensor toTensor(const Matrix& m) const;
+
   ModelInfo m_info;
   std::shared_ptr<Net> m_net;
+  torch::ScalarType m_type;
   torch::Tensor m_poseMean, m_poseStd, m_controlMean, m_controlStd;
 };
 

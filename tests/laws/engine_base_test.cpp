@@ -58,12 +58,13 @@ void fillControl(const ModelInfo& info, uint32_t sample, uint32_t frame, std::sp
 }
 
 /// What a sample gets depends on its number alone.
-std::vector<Matrix> rollout(const MotionModel& model, const std::vector<uint32_t>& samples) {
+std::vector<Matrix> rollout(const MotionModel& model, const std::vector<uint32_t>& samples,
+                            int frames = kFrames) {
   const ModelInfo& info = model.info();
   const auto rows = static_cast<long>(samples.size());
   RolloutState state = model.start(static_cast<int>(rows), {});
   std::vector<Matrix> out;
-  for (uint32_t t = 0; t < kFrames; ++t) {
+  for (uint32_t t = 0; t < static_cast<uint32_t>(frames); ++t) {
     Matrix control(rows, (info.context + 1L + info.lookahead) * info.controlDim),
         latent(rows, info.poseDim);
     for (long b = 0; b < rows; ++b) {
@@ -111,16 +112,47 @@ class Threads {
 
 class Bases : public testing::TestWithParam<std::string> {};
 
+/// Rows of which rounding alone may decide which regime or how firm a foot: where one draw of the
+/// truth goes another way than the truth, by more than a millimetre. They say nothing of an engine.
+class Undecided {
+ public:
+  static constexpr float kApart = 1e-3f;
+
+  /// Whether a row whose limit is known decides.
+  bool decides(float limit) {
+    ++m_rows;
+    if (limit < kApart) return true;
+    ++m_undecided;
+    return false;
+  }
+  double share() const { return static_cast<double>(m_undecided) / m_rows; }
+
+ private:
+  int m_rows = 0, m_undecided = 0;
+};
+
 TEST_P(Bases, SamplesAsThePlainPathDoes) {
-  const auto fast = modelOf(GetParam(), Execution::Engine),
-             plain = modelOf(GetParam(), Execution::Reference);
-  const auto samples = samplesWith(37, 5);
-  const auto got = rollout(*fast, samples), wanted = rollout(*plain, samples);
+  const Threads set(1);
+  const auto fast = modelOf(GetParam(), Execution::Engine);
+  const Truth truth(fileOf(GetParam()));
+  const auto samples = samplesWith(12, 5);
+  const auto got = rollout(*fast, samples), wanted = rollout(truth.exact(), samples);
+  std::vector<std::vector<Matrix>> draws(kFrames);
+  for (uint32_t draw = 1; draw <= Truth::kDraws; ++draw) {
+    const auto rolled = rollout(truth.changed(draw), samples);
+    for (size_t t = 0; t < draws.size(); ++t) draws[t].push_back(rolled[t]);
+  }
+  Undecided undecided;
   for (size_t t = 0; t < got.size(); ++t) {
     ASSERT_TRUE(wanted[t].allFinite());
-    const float size = std::max(1.f, wanted[t].cwiseAbs().maxCoeff());
-    EXPECT_LT((got[t] - wanted[t]).cwiseAbs().maxCoeff(), 5e-5f * size) << "frame " << t;
+    const Eigen::VectorXf limits = rowLimits(wanted[t], draws[t]);
+    for (long b = 0; b < limits.size(); ++b)
+      if (undecided.decides(limits(b))) {
+        EXPECT_LE((got[t].row(b) - wanted[t].row(b)).cwiseAbs().maxCoeff(), limits(b))
+            << "frame " << t << ", sample " << b;
+      }
   }
+  EXPECT_LE(undecided.share(), 0.05);
   EXPECT_GT((wanted.back().row(0) - wanted.back().row(1)).cwiseAbs().maxCoeff(), 1e-3f)
       << "samples are all the same";
 }
@@ -128,42 +160,58 @@ TEST_P(Bases, SamplesAsThePlainPathDoes) {
 /// From the plain path's past, so that a choice in which the two once differ does not go on: every
 /// frame alone has to be the same.
 TEST_P(Bases, MakesEveryOfFiftyFramesFromThePlainPathsPast) {
-  const auto fast = modelOf(GetParam(), Execution::Engine),
-             plain = modelOf(GetParam(), Execution::Reference);
-  const ModelInfo& info = plain->info();
-  const long window = info.context + 1L + info.lookahead;
-  for (const uint32_t sample : {1u, 2u, 3u}) {
-    RolloutState led = fast->start(1, {}), leading = plain->start(1, {});
-    for (uint32_t t = 0; t < 50; ++t) {
-      Matrix control(window, info.controlDim), latent(1, info.poseDim);
-      fillControl(info, sample, t, {control.data(), static_cast<size_t>(control.size())});
-      fillNormal({.seed = 4, .sample = sample, .frame = t, .stage = RandomStage::Test},
-                 {latent.data(), static_cast<size_t>(latent.size())});
-      const Matrix row = Eigen::Map<const Matrix>(control.data(), 1, control.size());
-      RolloutState fork = led, leadingFork = leading;
-      const Matrix wanted = plain->sampleFrame(leadingFork, row, latent);
-      ASSERT_TRUE(wanted.allFinite()) << "frame " << t;
-      const Matrix got = fast->sampleFrame(fork, row, latent);
-      EXPECT_LT((got - wanted).cwiseAbs().maxCoeff(),
-                1e-5f * std::max(1.f, wanted.cwiseAbs().maxCoeff()))
-          << "sample " << sample << ", frame " << t;
-      fast->observe(led, wanted, control);
-      plain->observe(leading, wanted, control);
-    }
+  constexpr long kRows = 50;
+  const Threads set(1);
+  const auto fast = modelOf(GetParam(), Execution::Engine);
+  const Truth truth(fileOf(GetParam()));
+  const ModelInfo& info = fast->info();
+  const long past = info.context, d = info.poseDim;
+  const auto made = rollout(truth.exact(), {1}, static_cast<int>(kRows + past));
+  Matrix history(kRows, past * d), control(kRows, (past + 1 + info.lookahead) * info.controlDim),
+      latent(kRows, d);
+  for (long t = 0; t < kRows; ++t) {
+    for (long lag = 0; lag < past; ++lag)
+      history.block(t, lag * d, 1, d) = made[static_cast<size_t>(t + lag)];
+    fillControl(info, 1, static_cast<uint32_t>(t + past),
+                {control.row(t).data(), static_cast<size_t>(control.cols())});
   }
+  fillNormal({.seed = 6, .stage = RandomStage::Test},
+             {latent.data(), static_cast<size_t>(latent.size())});
+  const auto next = [&](const MotionModel& model) {
+    RolloutState state = model.start(kRows, history);
+    return model.sampleFrame(state, control, latent);
+  };
+  const Matrix got = next(*fast), wanted = next(truth.exact());
+  ASSERT_TRUE(wanted.allFinite());
+  std::vector<Matrix> draws;
+  for (uint32_t draw = 1; draw <= Truth::kDraws; ++draw) draws.push_back(next(truth.changed(draw)));
+  const Eigen::VectorXf limits = rowLimits(wanted, draws);
+  Undecided undecided;
+  for (long t = 0; t < kRows; ++t)
+    if (undecided.decides(limits(t))) {
+      EXPECT_LE((got.row(t) - wanted.row(t)).cwiseAbs().maxCoeff(), limits(t)) << "frame " << t;
+    }
+  EXPECT_LE(undecided.share(), 0.05);
 }
 
 TEST_P(Bases, ScoresAsThePlainPathDoes) {
-  const auto fast = modelOf(GetParam(), Execution::Engine),
-             plain = modelOf(GetParam(), Execution::Reference);
+  const Threads set(1);
+  const auto fast = modelOf(GetParam(), Execution::Engine);
+  const Truth truth(fileOf(GetParam()));
   const auto sequences = sequencesOf(*fast, samplesWith(9, 0));
-  const auto got = scoresOf(*fast, sequences), wanted = scoresOf(*plain, sequences);
+  const auto got = scoresOf(*fast, sequences), wanted = scoresOf(truth.exact(), sequences);
+  const auto draws = scoreDrawsOf(truth, sequences);
+  std::vector<double> limits;
   for (size_t b = 0; b < got.size(); ++b)
     for (size_t t = 0; t < wanted[b].loglikNats.size(); ++t) {
-      const double nats = wanted[b].loglikNats[t];
-      EXPECT_NEAR(got[b].loglikNats[t], nats, 1e-5 * std::max(100.0, std::abs(nats)))
+      const double nats = wanted[b].loglikNats[t], limit = natsLimit(wanted, draws, b, t);
+      EXPECT_LE(std::abs(got[b].loglikNats[t] - nats), limit)
           << "sequence " << b << ", frame " << t;
+      limits.push_back(limit / std::max(100.0, std::abs(nats)));
     }
+  std::nth_element(limits.begin(), limits.begin() + static_cast<long>(limits.size() / 2),
+                   limits.end());
+  EXPECT_LT(limits[limits.size() / 2], 0.1) << "limits that everything keeps";
 }
 
 TEST_P(Bases, ASampleIsTheSameBitsInAnyBatchAtAnyPlaceForAnyNumberOfThreads) {
@@ -171,7 +219,6 @@ TEST_P(Bases, ASampleIsTheSameBitsInAnyBatchAtAnyPlaceForAnyNumberOfThreads) {
   const auto alone = rollout(*model, {kWatched});
   for (const int threads : {1, 2, 4}) {
     const Threads set(threads);
-    // Around the 32 rows of a block, and past two of them.
     for (const uint32_t batch : {3u, 33u, 70u})
       for (const size_t place : {size_t{0}, size_t{batch} - 1}) {
         const auto together = rollout(*model, samplesWith(batch, place));

@@ -13,6 +13,7 @@
 #include "base/random.h"
 #include "nn/packed_matrix.h"
 #include "nn/recurrent_stack.h"
+#include "nn/row_matrix.h"
 
 namespace marey::nn {
 namespace {
@@ -172,6 +173,42 @@ TEST_P(EveryIsa, ARowOfBf16WeightsIsTheRowOfTheirValues) {
                          .outStride = kPanel,
                          .rows = 9});
   EXPECT_EQ(got, wanted);
+}
+
+TEST_P(EveryIsa, ProductsInDoublePrecisionAreTheSameBitsAsAPlainLoop) {
+  for (const long columns : {4L, 16L, 20L, 32L, 64L, 100L}) {
+    const auto weights = noise(8, static_cast<size_t>(37 * columns)), inputs = noise(9, 37);
+    std::vector<double> x(inputs.begin(), inputs.end());
+    for (double& value : x) value /= 3.0;  // not a float: its products round
+    std::vector<double> got(static_cast<size_t>(columns), 0.5), wanted = got;
+    for (size_t k = 0; k < x.size(); ++k)
+      for (size_t j = 0; j < wanted.size(); ++j)
+        wanted[j] += x[k] * static_cast<double>(weights[k * wanted.size() + j]);
+    kernels().rowProduct({.x = x.data(),
+                          .inputs = 37,
+                          .weights = weights.data(),
+                          .columns = columns,
+                          .out = got.data()});
+    EXPECT_EQ(got, wanted) << columns << " columns";
+  }
+}
+
+TEST(RowMatrix, HasTheColumnsThatItWasGivenAndZerosAfterThem) {
+  const auto weights = noise(8, 5 * 6);
+  const std::vector<double> x{1, 2, 3, 4, 5};
+  const RowMatrix matrix(5, 6, weights);
+  std::vector<float> turned(30);
+  for (size_t k = 0; k < 5; ++k)
+    for (size_t j = 0; j < 6; ++j) turned[j * 5 + k] = weights[k * 6 + j];
+  std::vector<double> got(8), other(8);
+  ASSERT_EQ(matrix.paddedColumns(), 8);
+  matrix.addTo(x, got);
+  RowMatrix::transposed(5, 6, turned).addTo(x, other);
+  EXPECT_EQ(got, other);
+  EXPECT_EQ(got[6], 0.0);
+  double third = 0.0;
+  for (size_t k = 0; k < 5; ++k) third += x[k] * static_cast<double>(weights[k * 6 + 3]);
+  EXPECT_EQ(got[3], third);
 }
 
 /// Distance in units of the last place of the exact value.

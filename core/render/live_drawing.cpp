@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "render/endings.h"
 #include "render/live_decals.h"
 #include "render/live_internals.h"
 
@@ -33,6 +34,7 @@ Colour LiveScene::Internals::shownColour(size_t motion, double timeS) const {
   }
   if (options.dark) colour = onDark(colour);
   colour.a = m.highlighted ? 1.0 : std::clamp(m.opacity, 0.0, 1.0);
+  colour.a *= presenceAt(timeS, tracks[motion]->lastS());
   if (m.highlighted || !someHighlighted) return colour;
   const double kept = isSolid(colour.a) ? 1.0 : 0.45 * colour.a;
   return withOpacity(mix(colour, backdropOf(options.dark).floor, 0.62), kept);
@@ -126,7 +128,8 @@ void LiveScene::Internals::fillDecals() {
   for (size_t m = 0; m < motions.size(); ++m) {
     const Vec3 shift = aside ? tracks[m]->shift : Vec3::Zero();
     if (options.contactMarks && marksInPlace())
-      addRests(decalStrokes, tracks[m]->rests(options.contacts), time, shift, shownColour(m, time));
+      addRests(decalStrokes, tracks[m]->rests(options.contacts), time, shift,
+               shownColour(m, std::min(time, tracks[m]->lastS())));
     if (motions[m].highlighted && options.floor)
       addFootRing(decalStrokes, poseOf(m)[0], 0.42F, shownColour(m, time));
   }

@@ -106,7 +106,8 @@ class LiveScene {
   void setOptions(LiveOptions options);
   const LiveOptions& options() const;
 
-  /// Seconds from the first frame; clips of other rates follow the same clock and hold their ends.
+  /// Seconds from the first frame; clips of other rates follow the same clock; at
+  /// its end a clip fades to a pale trace of its last frame.
   void setTime(double seconds);
   double time() const;
   /// Seconds from the first to the last frame of the longest motion; 0 without motions.

@@ -9,6 +9,7 @@
 #include "render/bodies.h"
 #include "render/composite.h"
 #include "render/contacts.h"
+#include "render/endings.h"
 #include "render/floor.h"
 #include "render/overlay.h"
 #include "render/vtk_parts.h"
@@ -291,7 +292,9 @@ Image SceneRenderer::Internals::picture(const std::vector<Figure>& figures, cons
 std::vector<Figure> SceneRenderer::Internals::figuresAt(double timeS) const {
   std::vector<Figure> figures;
   for (size_t m = 0; m < spec.motions.size(); ++m) {
-    figures.push_back({m, poseAt(*spec.motions[m].clip, timeS), spec.motions[m].opacity});
+    const Clip& clip = *spec.motions[m].clip;
+    const double presence = presenceAt(timeS, (clip.frameCount() - 1) / clip.fps);
+    figures.push_back({m, poseAt(clip, timeS), spec.motions[m].opacity * presence});
   }
   return figures;
 }

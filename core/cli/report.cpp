@@ -25,12 +25,18 @@ void runReport(const Experiment& experiment, const std::string& out, bool pdf,
   Json tables = Json::array(), figures = Json::array();
   for (const auto& file : files.tables) tables.push_back(file.string());
   for (const auto& file : files.figures) figures.push_back(file.string());
+  Json leftOut = Json::array();
+  for (const LeftOut& one : result.leftOut)
+    leftOut.push_back({{"name", one.what}, {"why", one.why}});
   std::string text = files.html.string();
+  for (const LeftOut& one : result.leftOut)
+    text += fmt::format("\nleft out: {}: {}", one.what, one.why);
   text += files.pdf.empty() ? "\nno PDF: " + files.pdfNote : "\n" + files.pdf.string();
   context.print({{"report", files.html.string()},
                  {"pdf", files.pdf.string()},
                  {"tables", tables},
                  {"figures", figures},
+                 {"left_out", leftOut},
                  {"experiment_hash", result.hash}},
                 text);
 }

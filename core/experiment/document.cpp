@@ -39,6 +39,7 @@ Experiment experimentFromJson(const Json& value, const std::string& origin) {
   out.title = reader.optional("title", out.title);
   out.notes = reader.optional("notes", out.notes);
   out.natural = reader.required<std::vector<std::string>>("natural");
+  out.naturalLeftOut = reader.optional("natural_left_out", out.naturalLeftOut);
   out.systems = namedList(reader, "systems", systemFromJson);
   out.paths = namedList(reader, "paths", pathFromJson);
   out.samples = reader.optional("samples", out.samples);
@@ -85,6 +86,8 @@ Json withoutView(const Experiment& e) {
               {"feet", e.feet},
               {"tolerance_step_cm_s", e.toleranceStepCmS}};
   if (e.against != Experiment().against) out["against"] = e.against;
+  // Documents that leave nothing out keep the hash that they had.
+  if (!e.naturalLeftOut.empty()) out["natural_left_out"] = e.naturalLeftOut;
   return out;
 }
 

@@ -19,6 +19,8 @@ struct Experiment {
   /// Files, folders, @LIST, or walker:CLIPS,SECONDS,SEED for the procedural walker. A document may
   /// have none yet; running it then fails.
   std::vector<std::string> natural;
+  /// Names of natural clips that statistics, scores and samples leave out.
+  std::vector<std::string> naturalLeftOut;
   std::vector<ExperimentSystem> systems;
   std::vector<ExperimentPath> paths;
   int samples = 8;         ///< per path

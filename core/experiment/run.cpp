@@ -175,6 +175,17 @@ void scoreNatural(const MotionModel& model, const std::vector<Clip>& natural, Sy
   out.naturalNatsPerFrame = frames > 0 ? sum / frames : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Why a system cannot be compared with the natural motion; empty: it can.
+std::string whyNot(const MotionModel& model, const Experiment& experiment, const Clip& natural) {
+  try {
+    checkRate(model, experiment);
+    requireSameJoints(model.info(), natural, natural.name);
+  } catch (const InputError& fault) {
+    return fault.what();
+  }
+  return {};
+}
+
 double floorOf(const ModelInfo& info) {
   const Json facts = info.provenance.value("facts", Json::object());
   if (!facts.contains("linear_gaussian_nats_per_frame"))
@@ -198,12 +209,21 @@ ExperimentResult runExperiment(const Experiment& experiment, std::span<const Mod
   ExperimentResult out{.experiment = experiment, .hash = experimentHash(experiment)};
   Progress reading = progress.part(0.0, 0.05);
   out.natural = naturalClips(experiment, reading);
+  out.leftOut = dropNamed(out.natural, experiment.naturalLeftOut);
+  for (LeftOut& odd : keepMainBody(out.natural)) out.leftOut.push_back(std::move(odd));
+  if (out.natural.empty())
+    throwInput({.path = experiment.title, .item = "key 'natural'"}, "a clip to compare with",
+               "none of {}: {}", out.leftOut.size(),
+               out.leftOut.empty() ? "no file has one" : out.leftOut.front().why);
   out.feet = stats::feetOf(*out.natural.front().skeleton, experiment.feet);
   const double share = 0.95 / static_cast<double>(std::max<size_t>(1, experiment.systems.size()));
   for (size_t i = 0; i < experiment.systems.size(); ++i) {
     const ExperimentSystem& system = experiment.systems[i];
     const auto model = loadModel((experiment.folder / system.model).string(), families);
-    checkRate(*model, experiment);
+    if (std::string why = whyNot(*model, experiment, out.natural.front()); !why.empty()) {
+      out.leftOut.push_back({system.name, std::move(why)});
+      continue;
+    }
     SystemResult result{
         .name = system.name, .info = model->info(), .temperature = system.temperature};
     const double from = 0.05 + share * static_cast<double>(i);
@@ -216,6 +236,9 @@ ExperimentResult runExperiment(const Experiment& experiment, std::span<const Mod
     result.linearGaussianNats = floorOf(result.info);
     out.systems.push_back(std::move(result));
   }
+  if (out.systems.empty() && !experiment.systems.empty())
+    throwInput({.path = experiment.title, .item = "key 'systems'"},
+               "a system that fits the natural motion", "none: {}", out.leftOut.back().why);
   return out;
 }
 

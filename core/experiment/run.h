@@ -9,6 +9,7 @@
 
 #include "base/job.h"
 #include "base/ranks.h"
+#include "experiment/left_out.h"
 #include "experiment/sample_set.h"
 #include "model/motion_model.h"
 #include "model/scorer.h"
@@ -41,6 +42,9 @@ struct ExperimentResult {
   std::vector<Clip> natural;  ///< at the experiment's rate
   std::vector<int> feet;
   std::vector<SystemResult> systems;
+  /// Clips of another skeleton than most, or that the document does not use, and systems that do
+  /// not fit the natural motion.
+  std::vector<LeftOut> leftOut;
 };
 
 /// Natural clips at the experiment's rate. Throws InputError or FileError at the first fault.

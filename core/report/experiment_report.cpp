@@ -156,6 +156,12 @@ render::Recipe recipeFor(const ExperimentResult& r, const std::string& command) 
   return out;
 }
 
+std::string leftOutText(const ExperimentResult& r) {
+  std::string out = fmt::format("Not counted anywhere in this report ({}):", r.leftOut.size());
+  for (const LeftOut& one : r.leftOut) out += fmt::format("\n\n{}: {}", one.what, one.why);
+  return out;
+}
+
 std::string summaryOf(const ExperimentResult& r) {
   double seconds = 0.0;
   for (const Clip& clip : r.natural) seconds += clip.seconds();
@@ -221,6 +227,7 @@ ReportData reportOf(const ExperimentResult& r, const std::string& command, Progr
   out.tables = {footstepTable(r), likelihoodTable(r)};
   if (!r.experiment.paths.empty() && !r.systems.empty()) out.tables.push_back(obedienceTable(r));
   for (Table& table : statisticTables(r, progress)) out.tables.push_back(std::move(table));
+  if (!r.leftOut.empty()) out.notes.push_back({"Left out", leftOutText(r)});
   if (!r.experiment.notes.empty())
     out.notes.push_back({"About this experiment", r.experiment.notes});
   return out;

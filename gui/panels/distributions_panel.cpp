@@ -50,10 +50,12 @@ class DistributionsPanel : public PlotPanel {
 
  protected:
   void refresh() override {
-    const auto sets = motionSets(workspace().groups());
+    m_sets = motionSets(workspace().groups());
+    const auto& sets = m_sets;
+    showCounted(sets);
     if (sets.empty())
       return showHint(
-          tr("No motion is visible: open natural clips or sample a path to see how "
+          tr("No motion is used: open natural clips or sample a path to see how "
              "its joints move."));
     fillJoints(sets.front().clips.front()->skeleton);
     DistributionQuery query{
@@ -109,11 +111,11 @@ class DistributionsPanel : public PlotPanel {
     m_joints = new QListWidget(this);
     m_joints->setObjectName(QStringLiteral("distributionsJoints"));
     m_joints->setSelectionMode(QAbstractItemView::ExtendedSelection);
-    m_joints->setMaximumWidth(120);
+    m_joints->setMaximumWidth(104);
     m_joints->setToolTip(tr("Joints to plot; several with Ctrl or Shift"));
     m_map = new BodyMap(this);
     m_map->setObjectName(QStringLiteral("distributionsBodyMap"));
-    m_map->setMaximumWidth(240);
+    m_map->setMaximumWidth(150);  // the charts need the rest
     new ChartMenu(m_map, chartOutOf(workspace(), QStringLiteral("body-map"),
                                     [this] { return m_map->chart(); }));
     m_table = new ValueTable(this);
@@ -121,9 +123,9 @@ class DistributionsPanel : public PlotPanel {
     m_table->setMaximumHeight(150);
     m_table->setToolTip(tr("W1: 1-Wasserstein distance to natural motion"));
     auto* row = new QHBoxLayout;
-    content()->removeWidget(chart());
+    content()->removeWidget(chartArea());
     row->addWidget(m_joints);
-    row->addWidget(chart(), 1);
+    row->addWidget(chartArea(), 1);
     row->addWidget(m_map);
     content()->addLayout(row, 1);
     content()->addWidget(m_table);
@@ -173,6 +175,7 @@ class DistributionsPanel : public PlotPanel {
     for (const DistributionSet& set : m_result->sets)
       if (!set.look.natural) m_mapSet->addItem(QString::fromStdString(set.look.name));
     m_mapSet->setCurrentIndex(std::max(0, m_mapSet->findText(before)));
+    showCounted(m_sets, m_result->leftOut);
     redraw();
     showMap();
     fillTable();
@@ -239,6 +242,7 @@ class DistributionsPanel : public PlotPanel {
   std::shared_ptr<const DistributionResult> m_result;
   std::map<DistributionView, LinkedGrid> m_grids;  ///< of the result
   DistributionView m_shownView = DistributionView::Density;
+  std::vector<MotionSet> m_sets;
   std::vector<DistributionRow> m_rows;
   bool m_following = false;  ///< the list is being set, not used
 };

@@ -28,18 +28,26 @@ class DiversityPanel : public PlotPanel {
 
  protected:
   void refresh() override {
-    const auto sets = motionSets(workspace().groups());
+    m_sets = motionSets(workspace().groups());
+    const auto& sets = m_sets;
+    showCounted(sets);
     const bool pairs = std::any_of(sets.begin(), sets.end(),
                                    [](const MotionSet& s) { return s.clips.size() > 1; });
     if (!pairs)
       return showHint(
-          tr("Diversity compares pairs: show at least two motions of a group, for "
+          tr("Diversity compares pairs: use at least two motions of a group, for "
              "example by sampling a path."));
-    compute<std::vector<DiversityCurve>>(
+    using Compared = std::pair<std::vector<DiversityCurve>, std::vector<std::string>>;
+    compute<Compared>(
         tr("Comparing motions"),
-        [sets](Progress& progress) { return diversityCurves(sets, progress); },
-        [this](std::vector<DiversityCurve>& curves) {
-          m_curves = std::move(curves);
+        [sets](Progress& progress) {
+          Compared out;
+          out.first = diversityCurves(sets, progress, &out.second);
+          return out;
+        },
+        [this](Compared& compared) {
+          m_curves = std::move(compared.first);
+          showCounted(m_sets, compared.second);
           showGrid(diversityGrid(m_curves));
           showMeans();
         });
@@ -67,6 +75,7 @@ class DiversityPanel : public PlotPanel {
   }
 
   QLabel* m_means = nullptr;
+  std::vector<MotionSet> m_sets;
   std::vector<DiversityCurve> m_curves;
 };
 }  // namespace

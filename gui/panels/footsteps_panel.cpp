@@ -28,21 +28,27 @@ class FootstepsPanel : public PlotPanel {
 
  protected:
   void refresh() override {
-    const auto sets = motionSets(workspace().groups());
+    m_sets = motionSets(workspace().groups());
+    const auto& sets = m_sets;
+    showCounted(sets);
     if (sets.empty())
       return showHint(
-          tr("No motion is visible: open natural clips or sample a path to count "
+          tr("No motion is used: open natural clips or sample a path to count "
              "footsteps."));
     const Experiment& e = workspace().experiment();
     const FootstepQuery query{.feet = e.feet, .stepCmS = e.toleranceStepCmS};
     const auto range = workspace().range();
-    compute<std::vector<FootstepResult>>(
+    using Counted = std::pair<std::vector<FootstepResult>, std::vector<std::string>>;
+    compute<Counted>(
         tr("Counting footsteps"),
         [sets, range, query](Progress& progress) {
-          return footstepResults(sets, range, query, progress);
+          Counted out;
+          out.first = footstepResults(sets, range, query, progress, &out.second);
+          return out;
         },
-        [this](std::vector<FootstepResult>& results) {
-          m_results = std::move(results);
+        [this](Counted& counted) {
+          m_results = std::move(counted.first);
+          showCounted(m_sets, counted.second);
           show();
         });
   }
@@ -55,7 +61,8 @@ class FootstepsPanel : public PlotPanel {
 
  private:
   void show() {
-    if (m_results.empty()) return showHint(tr("No motion has frames inside the marked range."));
+    if (m_results.empty())
+      return showHint(tr("No motion with feet has frames inside the marked range."));
     showGrid(footstepGrid(m_results));
     m_rows = footstepRows(m_results);
     std::vector<std::vector<ValueCell>> cells;
@@ -76,6 +83,7 @@ class FootstepsPanel : public PlotPanel {
   }
 
   ValueTable* m_table = nullptr;
+  std::vector<MotionSet> m_sets;
   std::vector<FootstepResult> m_results;
   std::vector<FootstepRow> m_rows;
 };

@@ -66,6 +66,7 @@ class LibraryPanel : public QWidget {
     m_view->header()->hideSection(MotionTree::Frames);  // seconds say as much; the tooltip has both
     m_view->header()->resizeSection(MotionTree::Seconds, 46);
     m_view->header()->resizeSection(MotionTree::Score, 50);
+    m_view->header()->resizeSection(MotionTree::Use, 36);
     m_view->setIndentation(14);
   }
 
@@ -124,6 +125,15 @@ class LibraryPanel : public QWidget {
     });
   }
 
+  /// What plots and statistics count; showing and hiding are something else.
+  void addUse(QMenu& menu, const std::vector<MotionId>& motions, const QString& use,
+              const QString& leaveOut) {
+    for (const bool used : {true, false})
+      menu.addAction(used ? use : leaveOut, this,
+                     [this, motions, used] { m_workspace.setUsed(motions, used); })
+          ->setEnabled(!motions.empty());
+  }
+
   void fillGroupMenu(QMenu& menu, const MotionGroup& group, const std::string& source) {
     const int id = group.id;
     const auto selected = m_workspace.selection().motions;
@@ -133,6 +143,12 @@ class LibraryPanel : public QWidget {
     menu.addAction(tr("Show all of this group"), this,
                    [this, id] { m_workspace.setVisible(id, true); });
     menu.addAction(tr("Hide this group"), this, [this, id] { m_workspace.setVisible(id, false); });
+    menu.addSeparator();
+    addUse(menu, {selected.begin(), selected.end()}, tr("Use the selected motions"),
+           tr("Leave the selected motions out"));
+    std::vector<MotionId> all;
+    for (size_t i = 0; i < group.motions.size(); ++i) all.push_back({id, static_cast<int>(i)});
+    addUse(menu, all, tr("Use all of this group"), tr("Leave this group out"));
     menu.addSeparator();
     if (group.natural()) {
       menu.addAction(tr("Remove source “%1” from the document").arg(QString::fromStdString(source)),

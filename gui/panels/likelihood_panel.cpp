@@ -6,6 +6,7 @@
 #include <QPushButton>
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "panels/plot_panel.h"
 #include "plots/likelihood_data.h"
@@ -32,13 +33,21 @@ class LikelihoodPanel : public PlotPanel {
     m_worst = new QPushButton(tr("Worst frame"), this);
     m_worst->setObjectName(QStringLiteral("likelihoodWorstFrame"));
     m_worst->setToolTip(tr("Selects the motion with the least likely frame and goes there"));
-    for (QWidget* tool : std::initializer_list<QWidget*>{m_view, m_smooth, m_score, m_worst})
+    m_worstOf = new QComboBox(this);
+    m_worstOf->setObjectName(QStringLiteral("likelihoodWorstOf"));
+    m_worstOf->setToolTip(
+        tr("The model whose worst frame is meant: likelihoods of several have no common scale"));
+    m_worstOf->setMinimumContentsLength(4);
+    m_worstOf->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    for (QWidget* tool :
+         std::initializer_list<QWidget*>{m_view, m_smooth, m_score, m_worst, m_worstOf})
       tools()->addWidget(tool);
     tools()->insertStretch(2);
     chart()->setToolTip(tr("Nats per frame, poses in metres. Higher is more expected."));
     connect(m_view, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
             [this] { redraw(); });
     connect(m_smooth, &QCheckBox::toggled, this, [this] { redraw(); });
+    connect(m_worstOf, QOverload<int>::of(&QComboBox::activated), this, [this] { redraw(); });
     connect(m_score, &QPushButton::clicked, this, [this] {
       for (const ExperimentSystem& system : this->workspace().experiment().systems)
         this->workspace().scoreNatural(system.name);
@@ -62,8 +71,10 @@ class LikelihoodPanel : public PlotPanel {
         w.groups(), systems, [&w](const std::string& system) { return w.naturalScores(system); },
         w.experiment().fps));
     m_pictures.clear();
-    m_worst->setEnabled(!m_groups->empty());
-    if (m_groups->empty())
+    fillWorstOf();
+    m_worst->setEnabled(m_worstOf->count() > 0);
+    showCounted(sets, {notScoredText(*m_groups)});
+    if (m_worstOf->count() == 0)
       return showHint(
           tr("No log-likelihoods yet: sample a path, or press \"Score natural motion\" "
              "to see the natural clips under the models."));
@@ -89,13 +100,24 @@ class LikelihoodPanel : public PlotPanel {
     std::vector<LikelihoodFloor> floors;
     LinkedGrid grid;
   };
-  using Kind = std::pair<bool, bool>;  ///< every motion, smoothed
+  using Kind = std::tuple<bool, bool, std::string>;  ///< every motion, smoothed, worst frame of
 
   bool everyMotion() const { return m_view->currentIndex() == 1; }
 
+  std::string worstOf() const { return m_worstOf->currentText().toStdString(); }
+
+  void fillWorstOf() {
+    const QString before = m_worstOf->currentText();
+    m_worstOf->clear();
+    for (const std::string& system : systemsIn(*m_groups))
+      m_worstOf->addItem(QString::fromStdString(system));
+    m_worstOf->setCurrentIndex(std::max(0, m_worstOf->findText(before)));
+    m_worstOf->setVisible(m_worstOf->count() > 1);
+  }
+
   void redraw() {
-    if (!m_groups || m_groups->empty()) return;
-    const Kind kind{everyMotion(), m_smooth->isChecked()};
+    if (!m_groups || m_worstOf->count() == 0) return;
+    const Kind kind{everyMotion(), m_smooth->isChecked(), worstOf()};
     if (const auto known = m_pictures.find(kind); known != m_pictures.end())
       return show(known->second);
     const Workspace* w = &workspace();
@@ -103,9 +125,11 @@ class LikelihoodPanel : public PlotPanel {
         tr("Drawing log-likelihoods"),
         [w, groups = m_groups, files = m_floorFiles, kind](Progress&) {
           Picture out{.groups = *groups, .floors = readFloors(*w, files), .grid = {}};
-          if (kind.second) smooth(out.groups, kSmoothingS);
-          out.grid = likelihoodGrid(out.groups, out.floors, kind.first);
-          if (const auto worst = worstFrame(*groups, std::nullopt)) markWorst(out.grid, *worst);
+          const auto& [every, smoothed, system] = kind;
+          if (smoothed) smooth(out.groups, kSmoothingS);
+          out.grid = likelihoodGrid(out.groups, out.floors, every);
+          if (const auto worst = worstFrame(*groups, std::nullopt, system))
+            markWorst(out.grid, out.groups, *worst);
           return out;
         },
         [this, kind](Picture& picture) {
@@ -135,13 +159,13 @@ class LikelihoodPanel : public PlotPanel {
   }
 
   void goToWorst() {
-    const auto worst = worstFrame(*m_groups, workspace().range());
+    const auto worst = worstFrame(*m_groups, workspace().range(), worstOf());
     if (!worst) return;
     selectMotions({worst->id}, false);
     workspace().setTime(worst->timeS);
   }
 
-  QComboBox* m_view = nullptr;
+  QComboBox *m_view = nullptr, *m_worstOf = nullptr;
   QCheckBox* m_smooth = nullptr;
   QPushButton *m_score = nullptr, *m_worst = nullptr;
   std::shared_ptr<const std::vector<LikelihoodGroup>> m_groups;  ///< as scored

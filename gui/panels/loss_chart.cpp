@@ -12,7 +12,8 @@
 
 namespace marey::gui {
 namespace {
-constexpr double kLeft = 56.0, kRight = 12.0, kTop = 26.0, kBottom = 34.0;
+constexpr double kLeft = 56.0, kRight = 12.0, kBottom = 34.0;
+constexpr double kLegendLeft = 8.0, kLegendGap = 14.0;
 constexpr double kNear = 6.0;  ///< pixels
 /// The first steps are far off; the curves show where the rest happens.
 constexpr double kLowQuantile = 0.0, kHighQuantile = 0.97;
@@ -35,7 +36,27 @@ void LossChart::setCurrent(int checkpoint) {
 }
 
 QRectF LossChart::plot() const {
-  return QRectF(rect()).adjusted(kLeft, kTop, -kRight, -kBottom);
+  const auto words = legend();
+  return QRectF(rect()).adjusted(kLeft, words.back().place.bottom() + 6.0, -kRight, -kBottom);
+}
+
+std::vector<LossChart::Word> LossChart::legend() const {
+  const Inks inks = inksOf(palette());
+  const bool dark = isDark(palette());
+  const QFontMetricsF metrics(font());
+  std::vector<Word> words{{tr("Bits per frame:"), inks.text, {}},
+                          {tr("training"), inks.faintText, {}},
+                          {tr("validation"), shownColour(render::colourOf(0), dark), {}},
+                          {tr("test"), shownColour(render::colourOf(1), dark), {}}};
+  QPointF at(kLegendLeft, 4.0);
+  for (Word& word : words) {
+    const double width = metrics.horizontalAdvance(word.text);
+    if (at.x() > kLegendLeft && at.x() + width > this->width() - kRight)
+      at = {kLegendLeft, at.y() + metrics.height()};
+    word.place = QRectF(at, QSizeF(width, metrics.height()));
+    at.rx() += width + kLegendGap;
+  }
+  return words;
 }
 
 LossChart::Axis LossChart::lossAxis() const {
@@ -132,22 +153,14 @@ void LossChart::paintEvent(QPaintEvent*) {
   const Axis axis = lossAxis();
   paintAxes(painter, axis);
   paintCheckpoints(painter);
-  const bool dark = isDark(palette());
-  const std::tuple<QString, double LossRow::*, QColor> curves[] = {
-      {tr("training"), &LossRow::train, inks.faintText},
-      {tr("validation"), &LossRow::valid, shownColour(render::colourOf(0), dark)},
-      {tr("test"), &LossRow::test, shownColour(render::colourOf(1), dark)}};
-  double x = plot().left();
-  painter.setPen(inks.text);
-  const QString unit = tr("Bits per frame:");
-  painter.drawText(QPointF(x, kTop - 10), unit);
-  x += painter.fontMetrics().horizontalAdvance(unit) + 10;
-  for (const auto& [name, value, ink] : curves) {
-    paintCurve(painter, axis, value, ink);
-    painter.setPen(ink);
-    painter.drawText(QPointF(x, kTop - 10), name);
-    x += painter.fontMetrics().horizontalAdvance(name) + 14;
+  const std::vector<Word> words = legend();
+  for (const Word& word : words) {
+    painter.setPen(word.ink);
+    painter.drawText(word.place, Qt::AlignLeft | Qt::AlignVCenter | Qt::TextDontClip, word.text);
   }
+  double LossRow::*const values[] = {&LossRow::train, &LossRow::valid, &LossRow::test};
+  for (size_t i = 0; i < std::size(values); ++i)
+    paintCurve(painter, axis, values[i], words[i + 1].ink);
 }
 
 render::ChartGrid LossChart::chart() const {

@@ -1,7 +1,11 @@
 // The loss of a training run over its steps, with its checkpoints.
 #pragma once
 
+#include <QColor>
+#include <QRectF>
+#include <QString>
 #include <QWidget>
+#include <vector>
 
 #include "panels/training_run.h"
 
@@ -18,6 +22,14 @@ class LossChart : public QWidget {
   void setCurrent(int checkpoint);
   /// The curves as a chart; without charts where there is no run.
   render::ChartGrid chart() const;
+  /// What stands above the plot, in lines that fit the width.
+  struct Word {
+    QString text;
+    QColor ink;
+    QRectF place;
+  };
+  std::vector<Word> legend() const;
+  QRectF plot() const;  ///< below the legend
 
  Q_SIGNALS:
   void checkpointClicked(int index);
@@ -31,7 +43,6 @@ class LossChart : public QWidget {
   struct Axis {
     double low = 0.0, high = 1.0;
   };
-  QRectF plot() const;
   Axis lossAxis() const;
   double xOf(int64_t step) const;
   void paintAxes(QPainter& painter, const Axis& axis) const;

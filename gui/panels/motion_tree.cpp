@@ -200,6 +200,7 @@ QVariant MotionTree::branchData(const Branch& branch, int column, int role) cons
   if (group == nullptr) return {};
   const QString source = QString::fromStdString(branch.source);
   if (role == Qt::ToolTipRole) return source.isEmpty() ? recipeText(*group) : source;
+  if (column == Use && role == Qt::CheckStateRole) return state(branch, *group, &Motion::used);
   if (column != Name) return {};
   if (role == Qt::DisplayRole) {
     const QString name = source.isEmpty()
@@ -210,15 +211,16 @@ QVariant MotionTree::branchData(const Branch& branch, int column, int role) cons
     return QStringLiteral("%1  (%2)%3").arg(name).arg(branch.rows).arg(state);
   }
   if (role == Qt::DecorationRole) return swatch(group->colour());
-  if (role == Qt::CheckStateRole) return shownState(branch, *group);
+  if (role == Qt::CheckStateRole) return state(branch, *group, &Motion::visible);
   return {};
 }
 
-QVariant MotionTree::shownState(const Branch& branch, const MotionGroup& group) const {
+QVariant MotionTree::state(const Branch& branch, const MotionGroup& group,
+                           bool Motion::*flag) const {
   const int last = std::min(branch.first + branch.rows, static_cast<int>(group.motions.size()));
   const auto shown = std::count_if(group.motions.begin() + branch.first,
                                    group.motions.begin() + std::max(branch.first, last),
-                                   [](const Motion& m) { return m.visible; });
+                                   [flag](const Motion& m) { return m.*flag; });
   if (shown == 0) return Qt::Unchecked;
   return shown == branch.rows ? Qt::Checked : Qt::PartiallyChecked;
 }
@@ -237,6 +239,7 @@ QVariant MotionTree::motionData(const MotionGroup& group, size_t index, int colu
   const Motion& motion = group.motions[index];
   if (role == Qt::CheckStateRole && column == Name)
     return motion.visible ? Qt::Checked : Qt::Unchecked;
+  if (role == Qt::CheckStateRole && column == Use) return motion.used ? Qt::Checked : Qt::Unchecked;
   if (role == Qt::ToolTipRole) {
     const ClipSource& source = motion.clip->source;
     return tr("%1\n%2 frames at %3 per second, %4")
@@ -264,17 +267,23 @@ bool MotionTree::setData(const QModelIndex& index, const QVariant& value, int ro
   if (role != Qt::CheckStateRole) return false;
   const Branch* branch = branchOf(index);
   if (branch == nullptr || branch->group == kModels) return false;
-  const bool shown = value.toInt() == Qt::Checked;
-  if (index.internalId() == kBranchLevel)
-    m_workspace.setVisible(motionsOf(*branch), shown);
+  const bool on = value.toInt() == Qt::Checked;
+  const std::vector<MotionId> motions =
+      index.internalId() == kBranchLevel ? motionsOf(*branch) : std::vector<MotionId>{idOf(index)};
+  if (index.column() == Use)
+    m_workspace.setUsed(motions, on);
   else
-    m_workspace.setVisible(idOf(index), shown);
+    m_workspace.setVisible(motions, on);
   return true;
 }
 
 QVariant MotionTree::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation == Qt::Horizontal && role == Qt::ToolTipRole && section == Score)
     return tr("Mean log-likelihood of a sample under its own model, nats per frame");
+  if (orientation == Qt::Horizontal && role == Qt::ToolTipRole && section == Use)
+    return tr("Counted by plots and statistics, whether it is shown or hidden");
+  if (orientation == Qt::Horizontal && role == Qt::ToolTipRole && section == Name)
+    return tr("The box shows or hides a motion and changes no number");
   if (orientation != Qt::Horizontal || role != Qt::DisplayRole) return {};
   switch (section) {
     case Name:
@@ -285,6 +294,8 @@ QVariant MotionTree::headerData(int section, Qt::Orientation orientation, int ro
       return tr("s");
     case Score:
       return tr("nats");
+    case Use:
+      return tr("use");
     default:
       return {};
   }
@@ -294,7 +305,7 @@ Qt::ItemFlags MotionTree::flags(const QModelIndex& index) const {
   if (!index.isValid()) return Qt::NoItemFlags;
   Qt::ItemFlags flags = Qt::ItemIsEnabled | Qt::ItemIsSelectable;
   const Branch* branch = branchOf(index);
-  if (index.column() == Name && branch && branch->group != kModels)
+  if ((index.column() == Name || index.column() == Use) && branch && branch->group != kModels)
     flags |= Qt::ItemIsUserCheckable;
   return flags;
 }

@@ -11,7 +11,8 @@ namespace marey::gui {
 class MotionTree : public QAbstractItemModel {
   Q_OBJECT
  public:
-  enum Column { Name, Frames, Seconds, Score, kColumns };
+  /// Two things: the box of Name shows a motion, that of Use has it counted.
+  enum Column { Name, Frames, Seconds, Score, Use, kColumns };
 
   explicit MotionTree(Workspace& workspace, QObject* parent = nullptr);
 
@@ -49,7 +50,8 @@ class MotionTree : public QAbstractItemModel {
   const Branch* branchOf(const QModelIndex& index) const;
   std::vector<MotionId> motionsOf(const Branch& branch) const;
   QVariant branchData(const Branch& branch, int column, int role) const;
-  QVariant shownState(const Branch& branch, const MotionGroup& group) const;
+  /// Of all motions in the branch.
+  QVariant state(const Branch& branch, const MotionGroup& group, bool Motion::*flag) const;
   QVariant modelData(size_t system, int column, int role) const;
   QVariant motionData(const MotionGroup& group, size_t index, int column, int role) const;
 

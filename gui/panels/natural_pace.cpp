@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "plots/motion_sets.h"
+
 #include "base/error.h"
 #include "model/training_pace.h"
 
@@ -39,13 +41,10 @@ std::vector<NaturalPace::Source> NaturalPace::models() const {
 }
 
 std::vector<ClipPtr> NaturalPace::naturalClips() const {
-  std::vector<ClipPtr> out;
-  for (const MotionGroup& group : m_workspace.groups()) {
-    // While motions are being added, each addition would start the measurement anew.
-    if (!group.natural() || !group.complete) continue;
-    for (const Motion& motion : group.motions) out.push_back(motion.clip);
-  }
-  return out;
+  // What plots count as natural motion: an odd file among them cannot stop the measurement.
+  for (const MotionSet& set : motionSets(m_workspace.groups()))
+    if (set.natural) return set.clips;
+  return {};
 }
 
 void NaturalPace::refresh() {

@@ -2,6 +2,7 @@
 
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QScrollArea>
 #include <QShowEvent>
 #include <QStackedLayout>
 #include <algorithm>
@@ -14,6 +15,7 @@
 namespace marey::gui {
 namespace {
 constexpr int kDebounceMs = 120;
+constexpr int kLeastChart = 90;  ///< pixels of a chart that are seen at once
 }  // namespace
 
 PlotPanel::PlotPanel(Workspace& workspace, const QString& name, bool overTime, QWidget* parent)
@@ -30,7 +32,20 @@ PlotPanel::PlotPanel(Workspace& workspace, const QString& name, bool overTime, Q
   m_chart = new ChartView(shown);
   m_chart->setObjectName(objectNameOf(QStringLiteral("Chart")));
   m_chart->setFileStem(name);
-  m_content->addWidget(m_chart, 1);
+  m_scroll = new QScrollArea(shown);
+  m_scroll->setFrameShape(QFrame::NoFrame);
+  m_scroll->setWidgetResizable(true);
+  m_scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  m_scroll->setFocusPolicy(Qt::NoFocus);
+  m_scroll->setMinimumHeight(kLeastChart);
+  m_scroll->setWidget(m_chart);
+  m_content->addWidget(m_scroll, 1);
+  m_counted = new QLabel(this);
+  m_counted->setObjectName(objectNameOf(QStringLiteral("Counted")));
+  m_counted->setWordWrap(true);
+  m_counted->setTextFormat(Qt::PlainText);
+  m_counted->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  m_counted->hide();
   m_pages = new QStackedLayout(page);
   m_pages->addWidget(m_hint);
   m_pages->addWidget(shown);
@@ -40,6 +55,7 @@ PlotPanel::PlotPanel(Workspace& workspace, const QString& name, bool overTime, Q
   layout->setContentsMargins(6, 6, 6, 6);
   layout->addLayout(m_tools);
   layout->addWidget(page, 1);
+  layout->addWidget(m_counted);
   m_timer.setSingleShot(true);
   m_timer.setInterval(kDebounceMs);
   connect(&m_timer, &QTimer::timeout, this, [this] {
@@ -134,6 +150,19 @@ void PlotPanel::showHint(const QString& sentence) {
 
 void PlotPanel::showContent() {
   m_pages->setCurrentIndex(1);
+}
+
+QWidget* PlotPanel::chartArea() const {
+  return m_scroll;
+}
+
+void PlotPanel::showCounted(const std::vector<MotionSet>& sets,
+                            const std::vector<std::string>& notes) {
+  std::string text = countedText(sets);
+  for (const std::string& note : notes)
+    if (!note.empty()) text += (text.empty() ? "" : ". ") + note;
+  m_counted->setText(QString::fromStdString(text));
+  m_counted->setVisible(!text.empty());
 }
 
 void PlotPanel::showGrid(LinkedGrid grid) {

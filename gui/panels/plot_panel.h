@@ -15,6 +15,7 @@
 
 class QHBoxLayout;
 class QLabel;
+class QScrollArea;
 class QStackedLayout;
 class QVBoxLayout;
 
@@ -40,8 +41,10 @@ class PlotPanel : public QWidget {
   void refreshSoon();
   Workspace& workspace() const { return m_workspace; }
   ChartView* chart() const { return m_chart; }
+  /// The chart and what scrolls it where it needs more height than there is.
+  QWidget* chartArea() const;
   QHBoxLayout* tools() const { return m_tools; }
-  /// Below the tools; the chart is its first item.
+  /// Below the tools; the area of the chart is its first item.
   QVBoxLayout* content() const { return m_content; }
   QString objectNameOf(const QString& part) const { return m_name + part; }
 
@@ -52,6 +55,8 @@ class PlotPanel : public QWidget {
   /// Shows a grid; its recipe names the motions that are visible now.
   void showGrid(LinkedGrid grid);
   void showContent();
+  /// Below all: how many motions of every set are counted, and what is left out.
+  void showCounted(const std::vector<MotionSet>& sets, const std::vector<std::string>& notes = {});
   void showHighlights();
   /// The recipe of what is shown: document, range, and of every set motions, model and seed.
   render::Recipe recipe() const;
@@ -91,7 +96,8 @@ class PlotPanel : public QWidget {
   Workspace& m_workspace;
   QString m_name;
   QStackedLayout* m_pages = nullptr;
-  QLabel* m_hint = nullptr;
+  QLabel *m_hint = nullptr, *m_counted = nullptr;
+  QScrollArea* m_scroll = nullptr;
   QHBoxLayout* m_tools = nullptr;
   QVBoxLayout* m_content = nullptr;
   ChartView* m_chart = nullptr;

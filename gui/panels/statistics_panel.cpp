@@ -37,7 +37,7 @@ class StatisticsPanel : public PlotPanel {
  public:
   StatisticsPanel(Workspace& workspace, QWidget* parent)
       : PlotPanel(workspace, QStringLiteral("statistics"), false, parent) {
-    chart()->hide();
+    chartArea()->hide();
     m_compute = button(QStringLiteral("statisticsCompute"), tr("Compute"));
     m_copy = button(QStringLiteral("statisticsCopy"), tr("Copy"));
     m_copy->setToolTip(tr("Copies the table as tab-separated text"));
@@ -63,12 +63,13 @@ class StatisticsPanel : public PlotPanel {
  protected:
   void refresh() override {
     const StatisticsInput input = inputNow();
+    showCounted(input.sets, m_shown ? m_shown->notes : std::vector<std::string>{});
     m_compute->setEnabled(!input.sets.empty());
     if (m_shown) return showInput(input);
     // A hint would end the work; what has changed meanwhile is told when it is done.
     if (computing()) return;
     showHint(input.sets.empty()
-                 ? tr("No motion is visible: open natural clips or sample a path first.")
+                 ? tr("No motion is used: open natural clips or sample a path first.")
                  : tr("Press \"Compute\" to work out every statistic of %1.")
                        .arg(QString::fromStdString(input.text())));
   }
@@ -104,7 +105,7 @@ class StatisticsPanel : public PlotPanel {
         [this](StatisticsTable& table) { show(std::move(table)); });
   }
 
-  /// What the numbers belong to, and whether that is what is visible now.
+  /// What the numbers belong to, and whether that is what is used now.
   void showInput(const StatisticsInput& now) {
     const bool current = m_shown->input.sameAs(now);
     const QString what = QString::fromStdString(m_shown->input.text());
@@ -127,7 +128,9 @@ class StatisticsPanel : public PlotPanel {
     m_table->setRows(header, cells);
     m_copy->setEnabled(true);
     m_export->setEnabled(true);
-    showInput(inputNow());
+    const StatisticsInput now = inputNow();
+    showInput(now);
+    showCounted(now.sets, m_shown->notes);
     showContent();
   }
 

@@ -40,6 +40,7 @@ void ChartView::setGrid(render::ChartGrid grid) {
   m_highlights.clear();
   m_lit = {};
   if (m_zoomChart >= static_cast<int>(m_grid.charts.size())) m_zoom.reset();
+  growToFit();
   invalidate();
 }
 
@@ -70,6 +71,11 @@ void ChartView::resetZoom() {
 void ChartView::invalidate() {
   m_valid = false;
   update();
+}
+
+void ChartView::growToFit() {
+  const double least = render::leastHeight(m_grid, std::max(kSmallestWidth, width()));
+  setMinimumHeight(std::max(minimumSizeHint().height(), static_cast<int>(std::ceil(least))));
 }
 
 bool ChartView::drawable() const {
@@ -113,7 +119,8 @@ const QImage& ChartView::picture() const {
   return m_picture;
 }
 
-void ChartView::resizeEvent(QResizeEvent*) {
+void ChartView::resizeEvent(QResizeEvent* event) {
+  if (event->size().width() != event->oldSize().width()) growToFit();
   invalidate();
 }
 

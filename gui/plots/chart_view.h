@@ -79,6 +79,8 @@ class ChartView : public QWidget {
     bool moved = false;
   };
   void invalidate();
+  /// As high as the grid needs at this width.
+  void growToFit();
   void draw() const;
   render::ChartGrid shownGrid() const;
   bool drawable() const;

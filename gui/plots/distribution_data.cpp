@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "motion/main_body.h"
 #include "motion/roles.h"
 #include "stats/sample_distance.h"
 
@@ -89,15 +90,20 @@ std::vector<Vec3> meanPoseOf(const MotionSet& set) {
 
 DistributionResult distributionResult(const std::vector<MotionSet>& sets,
                                       const DistributionQuery& query, Progress& progress) {
-  DistributionResult out{.query = query, .skeleton = nullptr, .sets = {}, .meanPose = {}};
+  DistributionResult out{
+      .query = query, .skeleton = nullptr, .sets = {}, .leftOut = {}, .meanPose = {}};
   if (sets.empty()) return out;
   out.skeleton = sets.front().clips.front()->skeleton;
   out.meanPose = meanPoseOf(sets.front());
-  for (const MotionSet& set : sets)
-    for (const ClipPtr& clip : set.clips) requireJointsOf(*clip, *sets.front().clips.front());
   std::vector<std::vector<double>> natural;
   for (size_t i = 0; i < sets.size(); ++i) {
     const MotionSet& set = sets[i];
+    if (!sameJoints(set.body(), sets.front().body())) {
+      out.leftOut.push_back(set.name + ": " + otherJoints(set.body(), sets.front().body()));
+      continue;
+    }
+    // Sets are of one body, unless somebody else put them together.
+    for (const ClipPtr& clip : set.clips) requireJointsOf(*clip, *set.clips.front());
     const std::vector<Clip> clips = clipsIn(set, query.range).clips;
     if (clips.empty()) continue;
     DistributionSet one{.look = lookOf(set), .fps = set.clips.front()->fps};

@@ -36,10 +36,12 @@ struct DistributionResult {
   DistributionQuery query;
   std::shared_ptr<const Skeleton> skeleton;
   std::vector<DistributionSet> sets;
+  std::vector<std::string> leftOut;  ///< sets of another skeleton than the first one, and why
   std::vector<Vec3> meanPose;  ///< root frame (x left, y up, z ahead), metres, of the first set
 };
 
-/// Throws InputError (Sideways and Forward need hips) and CancelledError.
+/// Of sets with the joints of the first one. Throws InputError (Sideways and Forward need hips) and
+/// CancelledError.
 DistributionResult distributionResult(const std::vector<MotionSet>& sets,
                                       const DistributionQuery& query, Progress& progress);
 

@@ -5,6 +5,8 @@
 #include <functional>
 #include <limits>
 
+#include "plots/count_strip.h"
+
 #include "base/error.h"
 #include "stats/diversity.h"
 
@@ -73,14 +75,19 @@ DiversityCurve curveOf(const MotionSet& set, Progress& progress) {
 }
 }  // namespace
 
-std::vector<DiversityCurve> diversityCurves(const std::vector<MotionSet>& sets,
-                                            Progress& progress) {
+std::vector<DiversityCurve> diversityCurves(const std::vector<MotionSet>& sets, Progress& progress,
+                                            std::vector<std::string>* leftOut) {
   std::vector<DiversityCurve> out;
   for (size_t s = 0; s < sets.size(); ++s) {
     if (sets[s].clips.size() < 2) continue;
     Progress part = progress.part(static_cast<double>(s) / static_cast<double>(sets.size()),
                                   static_cast<double>(s + 1) / static_cast<double>(sets.size()));
-    out.push_back(curveOf(sets[s], part));
+    try {
+      out.push_back(curveOf(sets[s], part));
+    } catch (const InputError& fault) {
+      if (leftOut == nullptr) throw;
+      leftOut->push_back(sets[s].name + ": " + fault.what());
+    }
   }
   return out;
 }
@@ -108,17 +115,11 @@ LinkedGrid diversityGrid(const std::vector<DiversityCurve>& curves) {
     out.add(curve.look.line(framesInSeconds(distanceCm.size(), curve.fps), distanceCm),
             curve.look.ids);
   }
-  out.grid.charts.push_back({});
-  render::Chart& counts = out.grid.charts.back();
-  counts.x = {.label = "time", .unit = "s"};
-  int most = 1;
-  for (const DiversityCurve& curve : curves) most = std::max(most, curve.compared);
-  counts.y = {.label = "motions compared", .range = std::pair{0.0, 1.1 * most}};
-  counts.legend = render::LegendPlace::None;
+  std::vector<MotionCount> counts;
   for (const DiversityCurve& curve : curves)
-    out.add(curve.look.line(framesInSeconds(curve.pairs.motions.size(), curve.fps),
-                            {curve.pairs.motions.begin(), curve.pairs.motions.end()}),
-            curve.look.ids);
+    counts.push_back(
+        {curve.look, curve.fps, {curve.pairs.motions.begin(), curve.pairs.motions.end()}});
+  addCountStrip(out, counts);
   return out;
 }
 

@@ -25,13 +25,14 @@ struct DiversityCurve {
 /// joint distance in the root frame. Of more than stats::kDiversityMotions motions, these many are
 /// compared, spread evenly over the set. Sets of one motion are left out. Motions that follow
 /// different controls (natural ones) differ because their paths do: the name of their curve says
-/// so. Throws InputError on motions of different joints or rates or without left and right hip,
-/// CancelledError.
-std::vector<DiversityCurve> diversityCurves(const std::vector<MotionSet>& sets, Progress& progress);
+/// so. A set whose motions have different rates or no left and right hip is named in `leftOut`;
+/// without one InputError is thrown. Throws CancelledError.
+std::vector<DiversityCurve> diversityCurves(const std::vector<MotionSet>& sets, Progress& progress,
+                                            std::vector<std::string>* leftOut = nullptr);
 
 /// Over all pairs and frames inside the range, as the statistic diversity; NaN where there is none.
 double meanInRange(const DiversityCurve& curve, const std::optional<TimeRange>& range);
-/// The curves, and below them how many motions every point rests on.
+/// The curves, and where motions end before others a strip that says how many go on.
 LinkedGrid diversityGrid(const std::vector<DiversityCurve>& curves);
 /// How far single motions are from the others of their set.
 std::vector<ChartHighlight> diversityHighlights(const std::vector<DiversityCurve>& curves,

@@ -132,13 +132,20 @@ void addCounts(LinkedGrid& out, const FootstepResult& result, double scale) {
 
 std::vector<FootstepResult> footstepResults(const std::vector<MotionSet>& sets,
                                             const std::optional<TimeRange>& range,
-                                            const FootstepQuery& query, Progress& progress) {
+                                            const FootstepQuery& query, Progress& progress,
+                                            std::vector<std::string>* leftOut) {
   std::vector<FootstepResult> out;
   for (size_t i = 0; i < sets.size(); ++i) {
     Progress part = progress.part(static_cast<double>(i) / static_cast<double>(sets.size()),
                                   static_cast<double>(i + 1) / static_cast<double>(sets.size()));
     const ClipsInRange clips = clipsIn(sets[i], range);
-    if (!clips.clips.empty()) out.push_back(resultOf(sets[i], clips, query, part));
+    if (clips.clips.empty()) continue;
+    try {
+      out.push_back(resultOf(sets[i], clips, query, part));
+    } catch (const InputError& fault) {
+      if (leftOut == nullptr) throw;
+      leftOut->push_back(sets[i].name + ": " + fault.what());
+    }
   }
   return out;
 }

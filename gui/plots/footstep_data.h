@@ -33,11 +33,12 @@ struct FootstepResult {
   std::vector<MotionSteps> motions;
 };
 
-/// Sets with nothing inside the range are left out; every set has the feet of its own skeleton.
-/// Throws InputError and CancelledError.
+/// Sets with nothing inside the range are left out; every set has the feet of its own skeleton. One
+/// without feet is named in `leftOut`; without one InputError is thrown. Throws CancelledError.
 std::vector<FootstepResult> footstepResults(const std::vector<MotionSet>& sets,
                                             const std::optional<TimeRange>& range,
-                                            const FootstepQuery& query, Progress& progress);
+                                            const FootstepQuery& query, Progress& progress,
+                                            std::vector<std::string>* leftOut = nullptr);
 /// Whether counts must be given per minute: the sets are of different length.
 bool perMinute(const std::vector<FootstepResult>& results);
 /// Curves with a dot at v95, and beside them how long the steps take at v95.

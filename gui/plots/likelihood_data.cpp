@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "plots/count_strip.h"
 #include <fmt/format.h>
 
 #include "model/motion_model.h"
+#include "motion/main_body.h"
 #include "stats/sample_distance.h"
 
 namespace marey::gui {
@@ -17,7 +19,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void addNatural(std::vector<LikelihoodGroup>& out, const MotionSet& set, const std::string& system,
                 const std::vector<ClipScore>& scores, double fps) {
-  LikelihoodGroup group{.look = lookOf(set), .fps = fps};
+  LikelihoodGroup group{.look = lookOf(set),
+                        .fps = fps,
+                        .runs = {},
+                        .system = system,
+                        .body = set.clips.front()->skeleton};
   group.look.name = "natural under " + system;
   group.look.dashed =
       std::any_of(out.begin(), out.end(), [](const LikelihoodGroup& g) { return g.look.natural; });
@@ -28,7 +34,8 @@ void addNatural(std::vector<LikelihoodGroup>& out, const MotionSet& set, const s
     group.look.ids.push_back(id);
     group.runs.push_back({id, scores[index].firstFrame, scores[index].loglikNats});
   }
-  if (!group.runs.empty()) out.push_back(std::move(group));
+  group.notScored = static_cast<int>(set.ids.size() - group.runs.size());
+  out.push_back(std::move(group));
 }
 
 /// Values at the frames of the clip, from frame 0: runs of other models start elsewhere.
@@ -42,6 +49,7 @@ void addBand(LinkedGrid& out, const LikelihoodGroup& group) {
   std::vector<std::vector<double>> runs;
   for (const LikelihoodRun& run : group.runs) runs.push_back(fromFrameZero(run));
   Band band = bandOf(runs);
+  if (band.step.empty()) return;
   for (double& t : band.step) t /= group.fps;
   if (group.runs.size() > 1)
     out.add(group.look.band(band.step, band.low, band.high), group.look.ids);
@@ -49,6 +57,7 @@ void addBand(LinkedGrid& out, const LikelihoodGroup& group) {
 }
 
 void addCloud(LinkedGrid& out, const LikelihoodGroup& group) {
+  if (group.runs.empty()) return;
   size_t frames = 0;
   for (const LikelihoodRun& run : group.runs)
     frames = std::max(frames, static_cast<size_t>(run.firstFrame) + run.nats.size());
@@ -95,7 +104,11 @@ std::vector<LikelihoodGroup> likelihoodGroups(const std::vector<MotionGroup>& gr
     }
     const auto owner = std::find_if(groups.begin(), groups.end(),
                                     [&](const MotionGroup& g) { return g.id == set.group; });
-    LikelihoodGroup group{.look = lookOf(set), .fps = set.clips.front()->fps};
+    LikelihoodGroup group{.look = lookOf(set),
+                          .fps = set.clips.front()->fps,
+                          .runs = {},
+                          .system = set.system,
+                          .body = set.clips.front()->skeleton};
     group.look.ids.clear();
     for (const MotionId& id : set.ids) {
       const auto& score = owner->motions[static_cast<size_t>(id.index)].score;
@@ -127,11 +140,12 @@ void smooth(std::vector<LikelihoodGroup>& groups, double seconds) {
 }
 
 std::optional<WorstFrame> worstFrame(const std::vector<LikelihoodGroup>& groups,
-                                     const std::optional<TimeRange>& range) {
+                                     const std::optional<TimeRange>& range,
+                                     const std::string& system) {
   std::optional<WorstFrame> worst;
   for (const bool natural : {false, true}) {
     for (const LikelihoodGroup& group : groups) {
-      if (group.look.natural != natural) continue;
+      if (group.look.natural != natural || group.system != system) continue;
       for (const LikelihoodRun& run : group.runs)
         for (size_t i = 0; i < run.nats.size(); ++i) {
           const double time = (run.firstFrame + static_cast<double>(i)) / group.fps;
@@ -144,58 +158,140 @@ std::optional<WorstFrame> worstFrame(const std::vector<LikelihoodGroup>& groups,
   return worst;
 }
 
+std::vector<std::string> systemsIn(const std::vector<LikelihoodGroup>& groups) {
+  std::vector<std::string> out;
+  for (const LikelihoodGroup& group : groups)
+    if (!group.runs.empty() && std::find(out.begin(), out.end(), group.system) == out.end())
+      out.push_back(group.system);
+  return out;
+}
+
+std::string notScoredText(const std::vector<LikelihoodGroup>& groups) {
+  std::string out;
+  for (const LikelihoodGroup& group : groups) {
+    const int scored = static_cast<int>(group.runs.size());
+    if (group.notScored > 0)
+      out += fmt::format("{}{} {} of {} scored", out.empty() ? "" : ", ", group.look.name, scored,
+                         scored + group.notScored);
+  }
+  return out;
+}
+
 std::optional<double> linearGaussianFloor(const ModelInfo& info) {
   const Json facts = info.provenance.value("facts", Json::object());
   if (!facts.contains("linear_gaussian_nats_per_frame")) return std::nullopt;
   return facts["linear_gaussian_nats_per_frame"].get<double>() + info.standardiser.logDetPerFrame();
 }
 
-LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
-                          const std::vector<LikelihoodFloor>& floors, bool everyMotion) {
-  LinkedGrid out{.grid = render::single({})};
-  if (groups.empty()) return out;
-  render::Chart& chart = out.grid.charts.front();
+namespace {
+/// The chart of every group: one for each skeleton, by their first groups.
+std::vector<int> chartsOf(const std::vector<LikelihoodGroup>& groups) {
+  std::vector<int> out;
+  std::vector<const Skeleton*> bodies;
+  for (const LikelihoodGroup& group : groups) {
+    size_t chart = 0;
+    while (chart < bodies.size() && !sameJoints(*bodies[chart], *group.body)) ++chart;
+    if (chart == bodies.size()) bodies.push_back(group.body.get());
+    out.push_back(static_cast<int>(chart));
+  }
+  return out;
+}
+
+MotionCount countOf(const LikelihoodGroup& group) {
+  MotionCount count{group.look, group.fps, {}};
+  for (const LikelihoodRun& run : group.runs) {
+    const auto first = static_cast<size_t>(run.firstFrame);
+    count.goingOn.resize(std::max(count.goingOn.size(), first + run.nats.size()), 0);
+    for (size_t i = 0; i < run.nats.size(); ++i) ++count.goingOn[first + i];
+  }
+  return count;
+}
+
+void addFloor(LinkedGrid& out, const LikelihoodFloor& floor, bool named) {
+  render::Chart& chart = out.grid.charts.back();
+  if (chart.y.range) {
+    const double margin = 0.04 * (chart.y.range->second - floor.nats);
+    chart.y.range->first = std::min(chart.y.range->first, floor.nats - margin);
+  }
+  out.add({.kind = SeriesKind::HorizontalRule,
+           .name = named ? "linear-Gaussian, " + floor.system : "linear-Gaussian",
+           .colour = render::grey(0.45),
+           .y = {floor.nats},
+           .width = 1.4,
+           .dashed = true});
+}
+
+/// The groups of one skeleton in the last chart of the grid.
+void addBody(LinkedGrid& out, const std::vector<LikelihoodGroup>& groups,
+             const std::vector<LikelihoodFloor>& floors, bool everyMotion) {
+  render::Chart& chart = out.grid.charts.back();
   chart.x = {.label = "time", .unit = "s"};
   chart.y = {.label = "log-likelihood", .unit = "nats/frame"};
   for (const LikelihoodGroup& group : groups)
     everyMotion ? addCloud(out, group) : addBand(out, group);
   if (everyMotion) chart.y.range = centralRange(groups);
-  for (const LikelihoodFloor& floor : floors) {
-    if (chart.y.range) {
-      const double margin = 0.04 * (chart.y.range->second - floor.nats);
-      chart.y.range->first = std::min(chart.y.range->first, floor.nats - margin);
-    }
-    out.add({.kind = SeriesKind::HorizontalRule,
-             .name = floors.size() > 1 ? "linear-Gaussian, " + floor.system : "linear-Gaussian",
-             .colour = render::grey(0.45),
-             .y = {floor.nats},
-             .width = 1.4,
-             .dashed = true});
+  for (const LikelihoodFloor& floor : floors)
+    if (std::any_of(groups.begin(), groups.end(),
+                    [&](const LikelihoodGroup& g) { return g.system == floor.system; }))
+      addFloor(out, floor, floors.size() > 1);
+}
+}  // namespace
+
+LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
+                          const std::vector<LikelihoodFloor>& floors, bool everyMotion) {
+  if (groups.empty()) return {.grid = render::single({})};
+  LinkedGrid out;
+  const std::vector<int> charts = chartsOf(groups);
+  const int bodies = *std::max_element(charts.begin(), charts.end()) + 1;
+  for (int body = 0; body < bodies; ++body) {
+    std::vector<LikelihoodGroup> alike;
+    for (size_t g = 0; g < groups.size(); ++g)
+      if (charts[g] == body) alike.push_back(groups[g]);
+    out.grid.charts.push_back({});
+    addBody(out, alike, floors, everyMotion);
+    if (bodies > 1)
+      out.grid.charts.back().title = fmt::format("{} joints: {}", alike.front().body->jointCount(),
+                                                 fmt::join(systemsIn(alike), ", "));
   }
+  out.grid.shareX = bodies > 1;
+  std::vector<MotionCount> counts;
+  for (const LikelihoodGroup& group : groups) counts.push_back(countOf(group));
+  addCountStrip(out, counts);
   return out;
 }
 
-void markWorst(LinkedGrid& grid, const WorstFrame& worst) {
-  grid.add({.kind = SeriesKind::VerticalRule,
-            .name = fmt::format("worst frame, {:.0f} nats", worst.nats),
-            .colour = render::grey(0.45),
-            .x = {worst.timeS},
-            .width = 1.2,
-            .dashed = true},
-           {worst.id});
+void markWorst(LinkedGrid& grid, const std::vector<LikelihoodGroup>& groups,
+               const WorstFrame& worst) {
+  const std::vector<int> charts = chartsOf(groups);
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const auto& runs = groups[g].runs;
+    if (std::none_of(runs.begin(), runs.end(), [&](const auto& r) { return r.id == worst.id; }))
+      continue;
+    grid.addTo(charts[g],
+               {.kind = SeriesKind::VerticalRule,
+                .name = fmt::format("worst frame, {:.0f} nats", worst.nats),
+                .colour = render::grey(0.45),
+                .x = {worst.timeS},
+                .width = 1.2,
+                .dashed = true},
+               {worst.id});
+    return;
+  }
 }
 
 std::vector<ChartHighlight> likelihoodHighlights(const std::vector<LikelihoodGroup>& groups,
                                                  const std::set<MotionId>& picked) {
   std::vector<ChartHighlight> out;
-  for (const LikelihoodGroup& group : groups) {
+  const std::vector<int> charts = chartsOf(groups);
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const LikelihoodGroup& group = groups[g];
     if (!group.look.singles(picked)) continue;
     for (const LikelihoodRun& run : group.runs) {
       if (!picked.contains(run.id) || out.size() >= kMostHighlights) continue;
       std::vector<double> x;
       for (size_t i = 0; i < run.nats.size(); ++i)
         x.push_back((run.firstFrame + static_cast<double>(i)) / group.fps);
-      out.push_back(group.look.highlight(0, std::move(x), run.nats));
+      out.push_back(group.look.highlight(charts[g], std::move(x), run.nats));
     }
   }
   return out;

@@ -18,6 +18,9 @@ struct LikelihoodGroup {
   SetLook look;
   double fps = 20.0;
   std::vector<LikelihoodRun> runs;
+  std::string system;                    ///< whose density it is
+  std::shared_ptr<const Skeleton> body;  ///< densities over other joints are not comparable
+  int notScored = 0;                     ///< motions that are counted elsewhere
 };
 
 /// Scores of natural clips under a system; null where there are none (Workspace::naturalScores).
@@ -38,9 +41,15 @@ struct WorstFrame {
   MotionId id;
   double timeS = 0.0, nats = 0.0;
 };
-/// The least likely frame inside the range: of samples, and of natural motion where there are none.
+/// The least likely frame inside the range under one system, for densities of several have no
+/// common scale: of its samples, and of natural motion where there are none.
 std::optional<WorstFrame> worstFrame(const std::vector<LikelihoodGroup>& groups,
-                                     const std::optional<TimeRange>& range);
+                                     const std::optional<TimeRange>& range,
+                                     const std::string& system);
+/// The systems of the groups, in their order.
+std::vector<std::string> systemsIn(const std::vector<LikelihoodGroup>& groups);
+/// "natural under MG+ 29 of 30 scored"; empty where all are.
+std::string notScoredText(const std::vector<LikelihoodGroup>& groups);
 
 struct LikelihoodFloor {
   std::string system;
@@ -50,11 +59,13 @@ struct LikelihoodFloor {
 /// of poses in metres, where the model's provenance has it.
 std::optional<double> linearGaussianFloor(const ModelInfo& info);
 
-/// Median and 5 to 95 % band per group, or every motion as a line of a cloud.
+/// Median and 5 to 95 % band per group, or every motion as a line of a cloud: a chart for every
+/// skeleton, and where motions end before others a strip that says how many go on.
 LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
                           const std::vector<LikelihoodFloor>& floors, bool everyMotion);
 /// A line at that frame, which stands for its motion.
-void markWorst(LinkedGrid& grid, const WorstFrame& worst);
+void markWorst(LinkedGrid& grid, const std::vector<LikelihoodGroup>& groups,
+               const WorstFrame& worst);
 /// Single motions over the grid.
 std::vector<ChartHighlight> likelihoodHighlights(const std::vector<LikelihoodGroup>& groups,
                                                  const std::set<MotionId>& picked);

@@ -17,9 +17,11 @@ struct LinkedGrid {
 
   /// Adds a series to the last chart.
   void add(render::Series series, const std::vector<MotionId>& ids = {}) {
-    render::Chart& chart = grid.charts.back();
-    const CurveRef curve{static_cast<int>(grid.charts.size()) - 1,
-                         static_cast<int>(chart.series.size()), -1};
+    addTo(static_cast<int>(grid.charts.size()) - 1, std::move(series), ids);
+  }
+  void addTo(int index, render::Series series, const std::vector<MotionId>& ids = {}) {
+    render::Chart& chart = grid.charts[static_cast<size_t>(index)];
+    const CurveRef curve{index, static_cast<int>(chart.series.size()), -1};
     // The lines of a cloud are one motion each.
     for (size_t i = 0; series.cloud && i < ids.size(); ++i)
       motions[{curve.chart, curve.series, static_cast<int>(i)}] = {ids[i]};

@@ -3,30 +3,50 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "motion/main_body.h"
 #include "stats/bones.h"
 #include "stats/sample_distance.h"
 
 namespace marey::gui {
 
+namespace {
+/// The motions of a group that are used and have the joints of most of these.
+void addUsed(MotionSet& set, const MotionGroup& group) {
+  std::vector<int> used;
+  std::vector<const Skeleton*> bodies;
+  for (size_t i = 0; i < group.motions.size(); ++i) {
+    if (!group.motions[i].used) continue;
+    used.push_back(static_cast<int>(i));
+    bodies.push_back(group.motions[i].clip->skeleton.get());
+  }
+  const int main = mainBody(bodies);
+  for (size_t k = 0; k < used.size(); ++k) {
+    if (!sameJoints(*bodies[k], *bodies[static_cast<size_t>(main)])) {
+      ++set.otherBody;
+      continue;
+    }
+    set.ids.push_back({group.id, used[k]});
+    set.clips.push_back(group.motions[static_cast<size_t>(used[k])].clip);
+  }
+}
+}  // namespace
+
 std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups) {
   std::vector<MotionSet> sets;
   for (const MotionGroup& group : groups) {
-    const bool shown = std::any_of(group.motions.begin(), group.motions.end(),
-                                   [](const Motion& m) { return m.visible; });
     // A motion that is still being steered grows at every frame: it is compared once it is kept.
-    const bool steered = !group.complete && !group.recipe && !group.natural();
-    if (!shown || steered) continue;
+    if (!group.complete && !group.recipe && !group.natural()) continue;
     MotionSet set{.group = group.id,
                   .name = group.name,
                   .system = group.system,
                   .natural = group.natural(),
                   .colour = group.colour(),
-                  .wanted = group.wanted};
-    for (size_t i = 0; i < group.motions.size(); ++i) {
-      if (!set.natural && !group.motions[i].visible) continue;
-      set.ids.push_back({group.id, static_cast<int>(i)});
-      set.clips.push_back(group.motions[i].clip);
-    }
+                  .wanted = group.wanted,
+                  .all = static_cast<int>(group.motions.size())};
+    addUsed(set, group);
+    if (set.clips.empty()) continue;
     set.dashed = std::any_of(sets.begin(), sets.end(),
                              [&](const MotionSet& s) { return s.colour == set.colour; });
     sets.push_back(std::move(set));
@@ -34,6 +54,16 @@ std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups) {
   std::stable_sort(sets.begin(), sets.end(),
                    [](const MotionSet& a, const MotionSet& b) { return a.natural > b.natural; });
   return sets;
+}
+
+std::string countedText(const std::vector<MotionSet>& sets) {
+  std::string out;
+  for (const MotionSet& set : sets) {
+    out += fmt::format("{}{} {} of {}", out.empty() ? "Counted: " : ", ", set.name,
+                       set.clips.size(), set.all);
+    if (set.otherBody > 0) out += fmt::format(" ({} of another skeleton)", set.otherBody);
+  }
+  return out;
 }
 
 const MotionSet* naturalSet(const std::vector<MotionSet>& sets) {
@@ -62,8 +92,7 @@ ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range
 }
 
 void requireJointsOf(const Clip& clip, const Clip& first) {
-  const Skeleton &a = *clip.skeleton, &b = *first.skeleton;
-  if (&a == &b || (a.names == b.names && a.parents == b.parents)) return;
+  if (sameJoints(*clip.skeleton, *first.skeleton)) return;
   stats::requireSameJoints({sliceFrames(first, 0, 1), sliceFrames(clip, 0, 1)});
 }
 

@@ -22,11 +22,13 @@ struct MotionSet {
   /// For each motion the index of the natural clip whose control it follows; empty: the motions of
   /// a system all follow `wanted`, natural ones each their own.
   std::vector<int> follows = {};
+  int all = 0;        ///< motions of the group
+  int otherBody = 0;  ///< of these, used ones that have not the joints of `clips`
+  const Skeleton& body() const { return *clips.front()->skeleton; }
 };
 
-/// Sets of the groups that have something visible: the visible samples of a system, but all of the
-/// natural clips, of which the views show a few only. Natural motion comes first. Motions that are
-/// being steered are left out.
+/// One set per group: the motions that are used, shown or hidden, and that have the joints which
+/// most of these have. Natural motion comes first. Motions that are being steered are left out.
 std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups);
 const MotionSet* naturalSet(const std::vector<MotionSet>& sets);
 
@@ -39,6 +41,9 @@ struct ClipsInRange {
   std::vector<int> follows = {};               ///< of every clip, as in MotionSet; may be empty
 };
 ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range);
+
+/// "Counted: Natural 29 of 30 (1 of another skeleton), MG – circle 8 of 8"
+std::string countedText(const std::vector<MotionSet>& sets);
 
 /// Throws InputError unless `clip` has the joints of `first`, by name and parent.
 void requireJointsOf(const Clip& clip, const Clip& first);

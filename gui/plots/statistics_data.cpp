@@ -7,6 +7,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "motion/main_body.h"
 #include "stats/footsteps.h"
 
 namespace marey::gui {
@@ -82,14 +83,14 @@ bool StatisticsInput::sameAs(const StatisticsInput& other) const {
 std::string StatisticsInput::text() const {
   std::string out;
   for (const MotionSet& set : sets)
-    out += fmt::format("{}{} ({} {})", out.empty() ? "" : ", ", set.name, set.clips.size(),
-                       set.clips.size() == 1 ? "motion" : "motions");
+    out += fmt::format("{}{} ({} of {} motions)", out.empty() ? "" : ", ", set.name,
+                       set.clips.size(), set.all);
   if (range) out += fmt::format(", {:.2f} to {:.2f} s", range->beginS, range->endS);
   return out;
 }
 
 StatisticsTable statisticsTable(const StatisticsInput& input, Progress& progress) {
-  StatisticsTable table{.input = input, .systems = {}, .rows = {}};
+  StatisticsTable table{.input = input, .systems = {}, .rows = {}, .notes = {}};
   const MotionSet* naturalMotions = naturalSet(input.sets);
   ClipsInRange natural;
   if (naturalMotions != nullptr) natural = clipsIn(*naturalMotions, input.range);
@@ -111,7 +112,13 @@ StatisticsTable statisticsTable(const StatisticsInput& input, Progress& progress
     if (!input.feet.empty()) one.toes = one.feet;
     if (!naturalAlone) one.controls = controlsOf(sets[i]);
     std::vector<Clip> compared;
-    if (!naturalAlone && !natural.clips.empty()) {
+    const bool comparable = !naturalAlone && !natural.clips.empty();
+    const Skeleton& body = *sets[i].clips.front().skeleton;
+    if (comparable && !sameJoints(body, *natural.clips.front().skeleton)) {
+      table.notes.push_back(table.systems[i] + ": not compared with natural motion, " +
+                            otherJoints(body, *natural.clips.front().skeleton));
+      table.compared.emplace_back("no natural motion");
+    } else if (comparable) {
       const ComparedNatural choice = comparedWith(sets[i], natural, input.against);
       table.compared.push_back(choice.text);
       for (const size_t c : choice.clips) {
@@ -122,7 +129,13 @@ StatisticsTable statisticsTable(const StatisticsInput& input, Progress& progress
     }
     Progress part = progress.part(static_cast<double>(i) / static_cast<double>(sets.size()),
                                   static_cast<double>(i + 1) / static_cast<double>(sets.size()));
-    const auto results = stats::evaluate(stats::allStatistics(), one, {.seed = input.seed}, part);
+    std::vector<stats::StatisticResult> results;
+    try {
+      results = stats::evaluate(stats::allStatistics(), one, {.seed = input.seed}, part);
+    } catch (const InputError& fault) {
+      table.notes.push_back((naturalAlone ? naturalMotions->name : table.systems[i]) + ": " +
+                            fault.what());
+    }
     for (const stats::StatisticResult& result : results) {
       StatisticsRow& row = rowFor(table, result);
       if (naturalAlone) {

@@ -25,7 +25,7 @@ struct StatisticsInput {
   NaturalChoice against = NaturalChoice::All;
 
   bool sameAs(const StatisticsInput& other) const;
-  /// "Natural (120 motions), MG – circle (8 motions), 1.00 to 3.50 s"
+  /// "Natural (119 of 120 motions), MG – circle (8 of 8 motions), 1.00 to 3.50 s"
   std::string text() const;
 };
 
@@ -41,10 +41,12 @@ struct StatisticsTable {
   std::vector<std::string> systems;   ///< names of the sets that are not natural
   std::vector<std::string> compared;  ///< of every system, the natural motion it is compared with
   std::vector<StatisticsRow> rows;
+  std::vector<std::string> notes;  ///< sets that were not compared, and why
 };
 
 /// With natural motion alone its own values fill the natural column.
-/// Throws InputError and CancelledError as stats::evaluate.
+/// A set of another skeleton than natural motion has its own values, without those that compare;
+/// one that cannot be evaluated has none. Both are noted. Throws CancelledError.
 StatisticsTable statisticsTable(const StatisticsInput& input, Progress& progress);
 
 /// Header and rows with this separator: statistic, unit, value, low and high of every system and of

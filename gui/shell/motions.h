@@ -18,8 +18,9 @@ namespace marey::gui {
 struct Motion {
   ClipPtr clip;
   std::optional<ClipScore>
-      score;  ///< of a sample under its own model; natural clips: see Workspace
-  bool visible = true;
+      score;                ///< of a sample under its own model; natural clips: see Workspace
+  bool visible = true;      ///< drawn; changes nothing but pictures
+  bool used = true;         ///< counted by plots and statistics
   std::string source = {};  ///< of natural motion: the document's name for where it comes from
 };
 

@@ -81,11 +81,15 @@ void Workspace::documentMoved(const Experiment& before) {
   m_currentPath = std::clamp(m_currentPath, 0, std::max(0, paths - 1));
   followRenamed(before);
   std::erase_if(m_leftOut, [this](const std::string& name) { return systemIndex(name) < 0; });
-  const bool recoloured = recolour();
+  bool changed = recolour();
+  if (now.naturalLeftOut != before.naturalLeftOut) {
+    followUse();
+    changed = true;
+  }
   Q_EMIT documentChanged();
   if (now.natural != before.natural || now.fps != before.fps || now.folder != before.folder)
     readNatural();
-  if (recoloured || measuresOtherwise(before, now)) tellMotions();
+  if (changed || measuresOtherwise(before, now)) tellMotions();
 }
 
 void Workspace::followRenamed(const Experiment& before) {

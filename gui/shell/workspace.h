@@ -58,6 +58,9 @@ class Workspace : public QObject {
   void setVisible(int group, bool visible);
   void setVisible(const MotionId& id, bool visible);
   void setVisible(const std::vector<MotionId>& ids, bool visible);
+  /// Whether plots and statistics count motions, shown or hidden. Of natural clips the document
+  /// keeps it (by their names), so that a report leaves out the same ones.
+  void setUsed(const std::vector<MotionId>& ids, bool used);
   /// Hides all others.
   void showOnly(const std::set<MotionId>& shown);
   void setPinned(int group, bool pinned);
@@ -76,7 +79,8 @@ class Workspace : public QObject {
   std::vector<MotionId> visibleMotions() const;
   /// Joints of contact by the document's "feet", or found by name; empty where there are none.
   std::vector<int> feet() const;
-  std::shared_ptr<const Skeleton> skeleton() const;  ///< of the first motion; null without motions
+  /// That most motions of the first group have; null without motions.
+  std::shared_ptr<const Skeleton> skeleton() const;
 
   // Work in the background. Results come by signals, errors by JobQueue::failed.
   /// Reads all natural sources again; what cannot be read is reported, the rest is shown.
@@ -141,6 +145,8 @@ class Workspace : public QObject {
   /// Motions of a system that was only renamed stay its own.
   void followRenamed(const Experiment& before);
   bool recolour();
+  /// Natural clips are used unless the document leaves them out.
+  void followUse();
   void takeNatural(NaturalMotion natural);
   void jobEnded(int job, bool successful);
   /// Draws the motions of a group and hands them over as they come.

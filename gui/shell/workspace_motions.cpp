@@ -4,6 +4,7 @@
 #include "shell/workspace.h"
 
 #include "base/error.h"
+#include "motion/main_body.h"
 #include "stats/footsteps.h"
 
 namespace marey::gui {
@@ -79,6 +80,37 @@ void Workspace::setVisible(const std::vector<MotionId>& ids, bool visible) {
   if (changed) tellVisibility();
 }
 
+void Workspace::setUsed(const std::vector<MotionId>& ids, bool used) {
+  std::set<std::string> natural;
+  bool changed = false;
+  for (const MotionId& id : ids) {
+    if (motion(id) == nullptr || motion(id)->used == used) continue;
+    MotionGroup& group = *findGroup(id.group);
+    Motion& chosen = group.motions[static_cast<size_t>(id.index)];
+    if (group.natural()) {
+      natural.insert(chosen.clip->name);
+      continue;
+    }
+    chosen.used = used;
+    changed = true;
+  }
+  if (changed) tellMotions();
+  if (natural.empty()) return;
+  edit(used ? tr("Use clips") : tr("Leave clips out"), [&](Experiment& e) {
+    std::erase_if(e.naturalLeftOut,
+                  [&](const std::string& name) { return natural.contains(name); });
+    if (!used) e.naturalLeftOut.insert(e.naturalLeftOut.end(), natural.begin(), natural.end());
+  });
+}
+
+void Workspace::followUse() {
+  const auto& names = experiment().naturalLeftOut;
+  const std::set<std::string> leftOut(names.begin(), names.end());
+  for (MotionGroup& group : m_groups)
+    for (Motion& motion : group.motions)
+      if (group.natural()) motion.used = !leftOut.contains(motion.clip->name);
+}
+
 void Workspace::showOnly(const std::set<MotionId>& shown) {
   for (MotionGroup& group : m_groups)
     for (size_t i = 0; i < group.motions.size(); ++i)
@@ -149,8 +181,12 @@ std::vector<MotionId> Workspace::visibleMotions() const {
 }
 
 std::shared_ptr<const Skeleton> Workspace::skeleton() const {
-  for (const MotionGroup& group : m_groups)
-    if (!group.motions.empty()) return group.motions.front().clip->skeleton;
+  for (const MotionGroup& group : m_groups) {
+    std::vector<const Skeleton*> bodies;
+    for (const Motion& motion : group.motions) bodies.push_back(motion.clip->skeleton.get());
+    if (const int main = mainBody(bodies); main >= 0)
+      return group.motions[static_cast<size_t>(main)].clip->skeleton;
+  }
   return nullptr;
 }
 

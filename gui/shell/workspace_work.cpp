@@ -7,6 +7,7 @@
 #include "shell/workspace.h"
 
 #include "base/error.h"
+#include "motion/main_body.h"
 
 namespace marey::gui {
 namespace {
@@ -25,6 +26,40 @@ QString faultText(const std::vector<std::string>& faults) {
   if (faults.size() > kMostFaults)
     lines += Workspace::tr("and %1 more").arg(faults.size() - kMostFaults);
   lines += Workspace::tr("The rest is shown. File ▸ Reload natural motion tries again.");
+  return lines.join(u'\n');
+}
+
+/// Empty for a clip that is all context, or of another skeleton than the model's.
+ClipScore scoreOrNone(const MotionModel& model, const Clip& clip) {
+  if (clip.frameCount() <= model.info().context) return {};
+  try {
+    return scoreClip(model, clip);
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+/// Clips of another skeleton than most: they are shown, but nothing can compare them.
+QString oddText(const MotionGroup& natural) {
+  std::vector<const Skeleton*> bodies;
+  for (const Motion& motion : natural.motions) bodies.push_back(motion.clip->skeleton.get());
+  const int main = mainBody(bodies);
+  std::vector<std::string> odd;
+  for (const Motion& motion : natural.motions)
+    if (const Skeleton& body = *motion.clip->skeleton;
+        main >= 0 && !sameJoints(body, *bodies[static_cast<size_t>(main)]))
+      odd.push_back(motion.clip->name + ": " +
+                    otherJoints(body, *bodies[static_cast<size_t>(main)]));
+  if (odd.empty()) return {};
+  QStringList lines;
+  for (size_t i = 0; i < std::min(odd.size(), kMostFaults); ++i)
+    lines += QString::fromStdString(odd[i]);
+  if (odd.size() > kMostFaults) lines += Workspace::tr("and %1 more").arg(odd.size() - kMostFaults);
+  lines += Workspace::tr(
+               "%1 of %2 natural clips are shown but not counted: their joints are not "
+               "those that most clips have.")
+               .arg(odd.size())
+               .arg(natural.motions.size());
   return lines.join(u'\n');
 }
 
@@ -79,10 +114,13 @@ void Workspace::takeNatural(NaturalMotion natural) {
   for (const MotionGroup& old : m_groups)
     if (old.natural()) dropSelectionOf(old.id);
   std::erase_if(m_groups, [](const MotionGroup& g) { return g.natural(); });
+  const QString odd = oddText(group);
   if (!group.motions.empty()) m_groups.insert(m_groups.begin(), std::move(group));
+  followUse();
   tellMotions();
   Q_EMIT naturalScoresChanged();
   if (!natural.faults.empty()) report(tr("Reading natural motion"), faultText(natural.faults));
+  if (!odd.isEmpty()) report(tr("Comparing natural motion"), odd);
 }
 
 const std::vector<ClipScore>* Workspace::naturalScores(const std::string& system) const {
@@ -110,8 +148,8 @@ void Workspace::scoreNatural(const std::string& system) {
         const auto weights = models->model(file);
         for (size_t i = 0; i < clips.size(); ++i) {
           progress.throwIfCancelled();
-          const bool longEnough = clips[i]->frameCount() > weights->info().context;
-          scores->push_back(longEnough ? scoreClip(*weights, *clips[i]) : ClipScore{});
+          // One clip that the model cannot score leaves the others alone; panels count it.
+          scores->push_back(scoreOrNone(*weights, *clips[i]));
           progress.report(static_cast<double>(i + 1) / static_cast<double>(clips.size()));
         }
       },

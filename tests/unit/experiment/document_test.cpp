@@ -12,6 +12,7 @@
 #include "experiment/edits.h"
 #include "experiment/history.h"
 #include "experiment/run.h"
+#include "motion/walker.h"
 
 namespace marey {
 namespace {
@@ -138,6 +139,35 @@ TEST_F(InFolder, AFileThatVanishedCostsOnlyItsOwnClips) {
   EXPECT_NE(natural.faults[0].find("gone.bvh"), std::string::npos) << natural.faults[0];
   EXPECT_NE(natural.faults[1].find("noise.bvh"), std::string::npos) << natural.faults[1];
   EXPECT_THROW(naturalClips(e, progress), Error) << "a report would leave clips out silently";
+}
+
+TEST(LeftOut, IsStoredAndChangesNoOtherDocument) {
+  Experiment e = twoPaths();
+  EXPECT_FALSE(toJson(e).contains("natural_left_out")) << "every document would get another hash";
+  e.naturalLeftOut = {"b", "a"};
+  EXPECT_EQ(asStored(e), e);
+  EXPECT_NE(experimentHash(e), experimentHash(twoPaths()));
+}
+
+TEST(LeftOut, ClipsOfAnotherSkeletonThanMostAreNamed) {
+  std::vector<Clip> clips;
+  for (uint64_t seed = 1; seed <= 3; ++seed)
+    clips.push_back(walkerDataSet(1, 2.0, seed, 20.0).front().clip);
+  for (size_t i = 0; i < clips.size(); ++i)
+    clips[i].name = std::string(1, static_cast<char>('a' + i));
+  Skeleton odd = *clips[0].skeleton;
+  odd.names.back() = "Tail";
+  clips[0].skeleton = std::make_shared<const Skeleton>(odd);
+  const auto leftOut = keepMainBody(clips);
+  ASSERT_EQ(clips.size(), 2U);
+  EXPECT_EQ(clips[0].name, "b");
+  ASSERT_EQ(leftOut.size(), 1U);
+  EXPECT_EQ(leftOut[0].what, "a");
+  EXPECT_NE(leftOut[0].why.find("'Tail'"), std::string::npos) << leftOut[0].why;
+  const auto named = dropNamed(clips, {"c", "zz"});
+  ASSERT_EQ(named.size(), 1U);
+  EXPECT_EQ(named[0].what, "c");
+  EXPECT_EQ(clips.size(), 1U);
 }
 
 TEST(Running, WithoutNaturalMotionIsRefused) {

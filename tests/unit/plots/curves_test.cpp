@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "motion/walker.h"
+#include "render/chart_frame.h"
 #include "stats/diversity.h"
 #include "stats/sample_distance.h"
 
@@ -33,18 +34,64 @@ std::vector<MotionGroup> twoGroups() {
           groupOf(2, "MG", 0, {walkerClip(4, 3.0), walkerClip(5, 3.0)})};
 }
 
-TEST(MotionSets, TakeVisibleSamplesAndAllNaturalClips) {
+/// The same motion in a skeleton whose joints come in another order.
+ClipPtr reordered(const Clip& clip) {
+  Skeleton body = *clip.skeleton;
+  Clip out = clip;
+  // Leaves may swap places without breaking the order of parents: the two feet's ends.
+  const auto feet = stats::feetOf(body);
+  const auto a = static_cast<size_t>(feet.front()), b = static_cast<size_t>(feet.back());
+  std::swap(body.names[a], body.names[b]);
+  out.skeleton = std::make_shared<const Skeleton>(body);
+  for (int t = 0; t < out.frameCount(); ++t)
+    std::swap(out.positions[static_cast<size_t>(t * out.jointCount()) + a],
+              out.positions[static_cast<size_t>(t * out.jointCount()) + b]);
+  return std::make_shared<const Clip>(std::move(out));
+}
+
+ClipPtr oneJointFewer(const Clip& clip) {
+  Clip out = clip;
+  Skeleton body = *clip.skeleton;
+  const auto joints = static_cast<size_t>(body.jointCount());
+  body.names.pop_back();
+  body.parents.pop_back();
+  body.offsets.pop_back();
+  out.skeleton = std::make_shared<const Skeleton>(body);
+  out.transforms.reset();
+  out.positions.clear();
+  for (size_t i = 0; i < clip.positions.size(); ++i)
+    if (i % joints + 1 < joints) out.positions.push_back(clip.positions[i]);
+  return std::make_shared<const Clip>(std::move(out));
+}
+
+TEST(MotionSets, TakeWhatIsUsedWhetherItIsShownOrHidden) {
   auto groups = twoGroups();
-  groups[0].motions[1].visible = false;
-  groups[1].motions[0].visible = false;
+  groups[0].motions[1].used = false;
+  groups[1].motions[0].used = false;
   std::swap(groups[0], groups[1]);
   const auto sets = motionSets(groups);
   ASSERT_EQ(sets.size(), 2U);
   EXPECT_TRUE(sets[0].natural);
-  EXPECT_EQ(sets[0].clips.size(), 3U);
+  EXPECT_EQ(sets[0].ids, (std::vector<MotionId>{{1, 0}, {1, 2}}));
   EXPECT_EQ(sets[1].ids, (std::vector<MotionId>{{2, 1}}));
-  groups[0].motions[1].visible = false;
-  EXPECT_EQ(motionSets(groups).size(), 1U) << "a group of which nothing is visible is no set";
+  EXPECT_EQ(countedText(sets), "Counted: Natural 2 of 3, MG 1 of 2");
+  for (MotionGroup& group : groups)
+    for (Motion& motion : group.motions) motion.visible = false;
+  const auto hidden = motionSets(groups);
+  ASSERT_EQ(hidden.size(), 2U);
+  EXPECT_EQ(hidden[0].ids, sets[0].ids);
+  EXPECT_EQ(hidden[1].ids, sets[1].ids);
+  groups[0].motions[1].used = false;
+  EXPECT_EQ(motionSets(groups).size(), 1U) << "a group of which nothing is used is no set";
+}
+
+TEST(MotionSets, ClipsOfAnotherSkeletonThanMostAreCountedAsLeftOut) {
+  const ClipPtr plain = walkerClip(1);
+  const auto sets = motionSets({groupOf(
+      1, "Natural", -1, {reordered(*plain), plain, walkerClip(2), oneJointFewer(*plain)})});
+  ASSERT_EQ(sets.size(), 1U);
+  EXPECT_EQ(sets[0].ids, (std::vector<MotionId>{{1, 1}, {1, 2}}));
+  EXPECT_EQ(countedText(sets), "Counted: Natural 2 of 4 (2 of another skeleton)");
 }
 
 TEST(MotionSets, ARangeCutsClipsAndWantedPathsAlike) {
@@ -81,11 +128,11 @@ TEST(Likelihoods, WorstFrameIsThatOfASampleInsideTheRange) {
       scoredGroups(), {"MG"}, [&](const std::string&) { return &natural; }, 10.0);
   ASSERT_EQ(groups.size(), 2U);
   EXPECT_EQ(groups[0].runs.size(), 1U) << "clips that were too short to score";
-  const auto worst = worstFrame(groups, std::nullopt);
+  const auto worst = worstFrame(groups, std::nullopt, "MG");
   ASSERT_TRUE(worst);
   EXPECT_EQ(worst->id, (MotionId{2, 0}));
   EXPECT_DOUBLE_EQ(worst->timeS, 4.0 / groups[1].fps);
-  const auto early = worstFrame(groups, TimeRange{0.0, 3.0 / groups[1].fps});
+  const auto early = worstFrame(groups, TimeRange{0.0, 3.0 / groups[1].fps}, "MG");
   EXPECT_EQ(early->id, (MotionId{2, 1}));
 }
 
@@ -139,21 +186,6 @@ TEST(Footsteps, APickedMotionHasItsOwnCurveOnTheScaleOfItsSet) {
       << "a whole set is its own curve";
 }
 
-/// The same motion in a skeleton whose joints come in another order.
-ClipPtr reordered(const Clip& clip) {
-  Skeleton body = *clip.skeleton;
-  Clip out = clip;
-  // Leaves may swap places without breaking the order of parents: the two feet's ends.
-  const auto feet = stats::feetOf(body);
-  const auto a = static_cast<size_t>(feet.front()), b = static_cast<size_t>(feet.back());
-  std::swap(body.names[a], body.names[b]);
-  out.skeleton = std::make_shared<const Skeleton>(body);
-  for (int t = 0; t < out.frameCount(); ++t)
-    std::swap(out.positions[static_cast<size_t>(t * out.jointCount()) + a],
-              out.positions[static_cast<size_t>(t * out.jointCount()) + b]);
-  return std::make_shared<const Clip>(std::move(out));
-}
-
 TEST(Footsteps, FeetAreThoseOfEverySetsOwnSkeleton) {
   const ClipPtr plain = walkerClip(1);
   const ClipPtr other = reordered(*plain);
@@ -172,9 +204,77 @@ TEST(Distributions, SkeletonsOfEqualSizeButOtherNamesAreNotCompared) {
   const auto sets =
       motionSets({groupOf(1, "Natural", -1, {plain}), groupOf(2, "MG", 0, {reordered(*plain)})});
   Progress progress;
-  EXPECT_THROW(distributionResult(sets, {.joints = {0}, .range = {}}, progress), InputError);
+  const auto result = distributionResult(sets, {.joints = {0}, .range = {}}, progress);
+  ASSERT_EQ(result.sets.size(), 1U) << "the others go on";
+  EXPECT_TRUE(result.sets[0].look.natural);
+  ASSERT_EQ(result.leftOut.size(), 1U);
+  EXPECT_NE(result.leftOut[0].find("MG: another skeleton"), std::string::npos) << result.leftOut[0];
   const auto mixed = motionSets({groupOf(1, "MG", 0, {plain, reordered(*plain)})});
-  EXPECT_THROW(diversityCurves(mixed, progress), InputError);
+  EXPECT_TRUE(diversityCurves(mixed, progress).empty()) << "a pair of two skeletons";
+}
+
+TEST(Statistics, AModelOfAnotherSkeletonHasItsOwnValuesAndTheOthersGoOn) {
+  auto groups = twoGroups();
+  const ClipPtr other = oneJointFewer(*walkerClip(7));
+  groups.push_back(groupOf(3, "Dog", 1, {other, oneJointFewer(*walkerClip(8))}));
+  StatisticsInput input{.sets = motionSets(groups), .range = {}};
+  Progress progress;
+  const StatisticsTable with = statisticsTable(input, progress);
+  input.sets.pop_back();
+  const StatisticsTable without = statisticsTable(input, progress);
+  ASSERT_EQ(with.systems, (std::vector<std::string>{"MG", "Dog"}));
+  ASSERT_EQ(with.notes.size(), 1U);
+  EXPECT_TRUE(with.notes[0].starts_with("Dog: not compared with natural motion")) << with.notes[0];
+  size_t own = 0;
+  for (const StatisticsRow& row : with.rows) own += row.systems[1] ? 1 : 0;
+  EXPECT_GT(own, 0U);
+  for (const StatisticsRow& row : without.rows) {
+    const auto same = std::find_if(with.rows.begin(), with.rows.end(),
+                                   [&](const StatisticsRow& r) { return r.name == row.name; });
+    ASSERT_NE(same, with.rows.end());
+    EXPECT_EQ(same->systems[0]->value, row.systems[0]->value) << row.name;
+    EXPECT_EQ(same->natural, row.natural) << row.name;
+  }
+}
+
+TEST(Diversity, AStripSaysHowManyMotionsGoOn) {
+  const auto sets = motionSets(
+      {groupOf(1, "Natural", -1, {walkerClip(1, 4.0), walkerClip(2, 3.0), walkerClip(3, 2.0)})});
+  Progress progress;
+  const auto curves = diversityCurves(sets, progress);
+  ASSERT_EQ(curves.size(), 1U);
+  const auto frames = [&](size_t clip) {
+    return static_cast<size_t>(sets[0].clips[clip]->frameCount());
+  };
+  EXPECT_EQ(curves[0].pairs.motions[frames(2) - 1], 3);
+  EXPECT_EQ(curves[0].pairs.motions[frames(2)], 2);
+  const LinkedGrid grid = diversityGrid(curves);
+  ASSERT_EQ(grid.grid.charts.size(), 2U);
+  const render::Series& steps = grid.grid.charts[1].series.front();
+  EXPECT_EQ(steps.y.front(), 3.0);
+  EXPECT_EQ(steps.y.back(), 2.0);
+  EXPECT_NEAR(steps.x[1], static_cast<double>(frames(2)) / curves[0].fps, 1e-12);
+  EXPECT_EQ(
+      diversityGrid(diversityCurves(motionSets({twoGroups()[1]}), progress)).grid.charts.size(), 1U)
+      << "all go on to the end: the number of the set says it";
+}
+
+TEST(Likelihoods, ModelsOfOtherSkeletonsHaveTheirOwnAxisAndWorstFrame) {
+  auto groups = scoredGroups();
+  groups.push_back(groupOf(3, "Dog", 1, {oneJointFewer(*walkerClip(7))}));
+  groups[2].motions[0].score = ClipScore{.firstFrame = 2, .loglikNats = {-900, -901}};
+  const auto scored = likelihoodGroups(
+      groups, {"MG", "Dog"}, [](const std::string&) { return nullptr; }, 20.0);
+  EXPECT_EQ(systemsIn(scored), (std::vector<std::string>{"MG", "Dog"}));
+  EXPECT_EQ(worstFrame(scored, std::nullopt, "MG")->id, (MotionId{2, 0}));
+  EXPECT_EQ(worstFrame(scored, std::nullopt, "Dog")->id, (MotionId{3, 0}));
+  const LinkedGrid grid = likelihoodGrid(scored, {{"MG", 1.5}, {"Dog", -950.0}}, false);
+  ASSERT_GE(grid.grid.charts.size(), 2U);
+  for (const double nats : grid.grid.charts[0].series.back().y) EXPECT_GT(nats, -100.0);
+  const auto frames = render::framesOf(grid.grid, {600, 500});
+  EXPECT_GT(frames[0].yLow, -100.0) << "the other model's scale is in this one's axis";
+  EXPECT_LT(frames[1].yHigh, -800.0);
+  EXPECT_EQ(likelihoodHighlights(scored, {{2, 1}}).front().chart, 0);
 }
 
 TEST(Diversity, APickedMotionShowsItsDistanceFromTheOthers) {
@@ -212,7 +312,7 @@ TEST(Likelihoods, TheWorstFrameIsALineThatStandsForItsMotion) {
   const auto groups = likelihoodGroups(
       scoredGroups(), {"MG"}, [](const std::string&) { return nullptr; }, 20.0);
   LinkedGrid grid = likelihoodGrid(groups, {}, false);
-  markWorst(grid, *worstFrame(groups, std::nullopt));
+  markWorst(grid, groups, *worstFrame(groups, std::nullopt, "MG"));
   const int last = static_cast<int>(grid.grid.charts[0].series.size()) - 1;
   EXPECT_EQ(grid.motions.at({0, last, -1}), (std::vector<MotionId>{{2, 0}}));
   const auto picked = likelihoodHighlights(groups, {{2, 1}});
@@ -267,7 +367,7 @@ TEST(Statistics, TableHasSystemsBesideNaturalMotionAndKnowsItsInput) {
   EXPECT_EQ(table.systems, (std::vector<std::string>{"MG"}));
   EXPECT_GT(table.rows.size(), 5U);
   EXPECT_TRUE(table.rows[0].systems[0] && table.rows[0].natural);
-  EXPECT_EQ(input.text(), "Natural (3 motions), MG (2 motions)");
+  EXPECT_EQ(input.text(), "Natural (3 of 3 motions), MG (2 of 2 motions)");
   StatisticsInput later = input;
   EXPECT_TRUE(table.input.sameAs(later));
   later.range = TimeRange{0.0, 1.0};

@@ -108,16 +108,23 @@ std::string headText(const ClipStatistics& found) {
 
 void runAnalyze(const Context& context, const AnalyzeOptions& options) {
   Progress progress = context.progress("analyzing");
-  ClipStatisticsRequest request{.clips = {expandInputs(options.inputs), options.read, options.fps},
+  const io::Inputs inputs = io::findInputs(options.inputs);
+  io::InputReport report(inputs);
+  ClipStatisticsRequest request{.clips = {inputs.files, options.read, options.fps},
                                 .natural = {{}, options.read, 0.0},
                                 .controls = controlRule(options.controls),
                                 .against = naturalChoiceByName(options.natural),
                                 .feet = options.feet,
                                 .footStepCmS = options.toleranceStepCmS,
                                 .options = {.resamples = options.resamples, .seed = context.seed}};
-  if (!options.against.empty()) request.natural.files = expandInputs(options.against);
+  if (!options.against.empty()) {
+    const io::Inputs natural = io::findInputs(options.against);
+    request.natural.files = natural.files;
+    report.add(io::InputReport(natural));
+  }
   const ClipStatistics found = clipStatistics(request, *context.ranks, progress);
   if (!context.ranks->first()) return;
+  report.add(found.inputs);
   Json result = {{"clips", found.clips}, {"seconds", found.seconds}, {"fps", found.fps}};
   if (found.compared) result["compared_with"] = found.comparedWith;
   if (found.footsteps) result["footsteps"] = footstepsJson(*found.footsteps);
@@ -128,6 +135,8 @@ void runAnalyze(const Context& context, const AnalyzeOptions& options) {
     list.push_back(statisticJson(r, found.compared));
   }
   result["statistics"] = std::move(list);
+  report.addTo(result);
+  tell(context, report);
   context.print(result, headText(found) + statisticsText(found.results, found.compared));
 }
 

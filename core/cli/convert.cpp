@@ -70,7 +70,9 @@ class Converter {
   Converter(const Context& context, const ConvertOptions& options)
       : m_context(context), m_options(options), m_range(parseFrames(options.frames)) {}
 
-  Json convert(const std::vector<fs::path>& files) {
+  Json convert(const io::Inputs& inputs) {
+    const std::vector<io::InputFile>& files = inputs.files;
+    m_report = io::InputReport(inputs);
     Progress progress = m_context.progress("converting");
     const fs::path out(m_options.out);
     const bool folder = isFolder(out);
@@ -78,16 +80,19 @@ class Converter {
     if (folder) m_staged.emplace(out);
     for (size_t i = 0; i < files.size(); ++i) {
       progress.throwIfCancelled();
-      const std::vector<Clip> clips = io::readClips(files[i], m_options.read);
+      const std::vector<Clip> clips = m_report.read(files[i], m_options.read);
       if (!folder && (files.size() > 1 || clips.size() > 1))
         throw UsageError(
             fmt::format("--out: expected a folder for several clips, found '{}'", m_options.out));
       for (const Clip& clip : clips)
-        write(clip, files[i], folder ? inFolder(m_staged->path(), clip) : out);
+        write(clip, files[i].path, folder ? inFolder(m_staged->path(), clip) : out);
       progress.report(static_cast<double>(i + 1) / static_cast<double>(files.size()));
     }
+    m_report.throwIfNone(m_written.size());
     if (folder) m_staged->commit();
     Json result = {{"written", m_written}};
+    m_report.addTo(result);
+    tell(m_context, m_report);
     m_fits.addTo(result);
     m_fits.tell(m_context);
     return result;
@@ -103,13 +108,19 @@ class Converter {
 
   void write(const Clip& clip, const fs::path& from, const fs::path& to) {
     Clip out = sliced(clip, m_range);
-    if (m_options.fps > 0.0) out = resampled(out, m_options.fps);
+    if (m_options.fps > 0.0) {
+      m_report.resample(out, m_options.fps);
+      out = resampled(out, m_options.fps);
+    }
     io::WriteOptions write = m_options.write;
     if (write.format.empty() && isFolder(m_options.out)) write.format = "bvh";
     write.recipe = {
         {"marey", MAREY_VERSION}, {"command", m_context.commandLine}, {"input", from.string()}};
     if (!m_options.frames.empty()) write.recipe["frames"] = m_options.frames;
     if (m_options.fps > 0.0) write.recipe["resampled_to_fps"] = m_options.fps;
+    for (const io::Doubt& doubt : m_report.doubts())
+      if (doubt.path == clip.source.path && doubt.clip == clip.name)
+        write.recipe["warnings"].push_back(doubt.text);
     const io::WrittenClip written = io::writeClip(out, to, write);
     m_fits.add(written.fit);
     for (const fs::path& path : written.files)
@@ -123,10 +134,11 @@ class Converter {
   std::set<std::string> m_names;
   std::vector<std::string> m_written;
   FitReport m_fits;
+  io::InputReport m_report;
 };
 
 void runConvert(const Context& context, const ConvertOptions& options) {
-  const Json result = Converter(context, options).convert(expandInputs(options.inputs));
+  const Json result = Converter(context, options).convert(io::findInputs(options.inputs));
   std::string text;
   for (const Json& path : result["written"]) text += path.get<std::string>() + "\n";
   context.print(result, text);
@@ -157,6 +169,7 @@ void addConvertCommand(CLI::App& app, Context& context) {
   command->add_option("--source-fps", options->read.fps, "frame rate of the input")
       ->check(CLI::PositiveNumber);
   addEulerOption(*command, "--source-euler,--euler", options->read);
+  addWholeRowsOption(*command, options->read);
   command->add_option("--asf", options->read.asf, "skeleton of AMC files");
 }
 

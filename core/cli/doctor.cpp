@@ -21,7 +21,9 @@ bool unreadable(const io::DoctorReport& report) {
 }
 
 void runDoctor(const Context& context, const DoctorOptions& options) {
-  const std::vector<std::filesystem::path> files = expandInputs(options.inputs);
+  const io::Inputs inputs = io::findInputs(options.inputs);
+  const io::InputReport others(inputs);
+  const std::vector<std::filesystem::path> files = inputs.paths();
   Progress progress = context.progress("examining");
   Json result = {{"files", Json::array()}};
   std::string text, firstFailure;
@@ -35,6 +37,8 @@ void runDoctor(const Context& context, const DoctorOptions& options) {
     }
     progress.report(static_cast<double>(i + 1) / static_cast<double>(files.size()));
   }
+  others.addTo(result);
+  tell(context, others);
   context.print(result, text);
   if (failures == 1) throw InputError(firstFailure);
   if (failures > 1)

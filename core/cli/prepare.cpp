@@ -36,42 +36,59 @@ double secondsOf(const std::vector<Clip>& clips) {
   return sum;
 }
 
+Json resultOf(const Options& o, const DataSet& data, const std::vector<Clip>& train,
+              const std::vector<Clip>& test) {
+  return {{"train_windows", windowCount(data.train, o.prepare)},
+          {"test_windows", windowCount(data.test, o.prepare)},
+          {"pose_dim", data.poseDim()},
+          {"control_dim", data.controlDim()},
+          {"seconds", secondsOf(train) + secondsOf(test)},
+          {"train_clips", train.size()},
+          {"test_clips", test.size()},
+          {"train_seconds", secondsOf(train)},
+          {"test_seconds", secondsOf(test)},
+          {"out", o.out}};
+}
+
 void run(const Options& o, const Context& context) {
-  std::vector<std::filesystem::path> trainFiles = expandInputs(o.sources), testFiles;
-  for (const std::string& input : o.test)
-    for (const auto& file : expandInputs({asList(input)})) testFiles.push_back(file);
+  io::Inputs train = io::findInputs(o.sources), test;
+  if (!o.test.empty()) {
+    std::vector<std::string> lists;
+    for (const std::string& input : o.test) lists.push_back(asList(input));
+    test = io::findInputs(lists);
+  }
   // A held-out clip never trains, even where SRC is a folder that holds both.
   std::set<std::filesystem::path> held;
-  for (const auto& path : testFiles) held.insert(std::filesystem::weakly_canonical(path));
-  std::erase_if(trainFiles, [&](const auto& path) {
-    return held.contains(std::filesystem::weakly_canonical(path));
+  for (const io::InputFile& file : test.files)
+    held.insert(std::filesystem::weakly_canonical(file.path));
+  std::erase_if(train.files, [&](const io::InputFile& file) {
+    return held.contains(std::filesystem::weakly_canonical(file.path));
   });
   Progress progress = context.progress("prepare");
   Progress reading = progress.part(0.0, 0.5), preparing = progress.part(0.5, 0.9);
   Progress readTrain = reading.part(0.0, 0.9), readTest = reading.part(0.9, 1.0);
-  const auto train = readAll(trainFiles, o.read, readTrain);
-  const auto test = testFiles.empty() ? std::vector<Clip>{} : readAll(testFiles, o.read, readTest);
-  DataSet data = prepareDataSet(train, test, o.prepare, preparing);
+  io::InputReport report(train);
+  report.add(io::InputReport(test));
+  const auto trainClips = readAll(train, o.read, report, readTrain);
+  const auto testClips = readAll(test, o.read, report, readTest);
+  for (const auto* clips : {&trainClips, &testClips})
+    for (const Clip& clip : *clips) report.resample(clip, o.prepare.features.fps);
+  DataSet data = prepareDataSet(trainClips, testClips, o.prepare, preparing);
   data.provenance["command"] = context.commandLine;
+  report.addTo(data.provenance);
   writeDataSet(o.out, data);
   progress.report(1.0, "written");
-  const Json result = {{"train_windows", windowCount(data.train, o.prepare)},
-                       {"test_windows", windowCount(data.test, o.prepare)},
-                       {"pose_dim", data.poseDim()},
-                       {"control_dim", data.controlDim()},
-                       {"seconds", secondsOf(train) + secondsOf(test)},
-                       {"train_clips", train.size()},
-                       {"test_clips", test.size()},
-                       {"train_seconds", secondsOf(train)},
-                       {"test_seconds", secondsOf(test)},
-                       {"out", o.out}};
+  Json result = resultOf(o, data, trainClips, testClips);
+  report.addTo(result);
+  tell(context, report);
   context.print(
       result,
       fmt::format("{}: {} training clips ({:.1f} min, {} windows with augmentation), {} test clips "
                   "({:.1f} min, {} windows); {} pose and {} control values per frame at {} fps",
-                  o.out, train.size(), secondsOf(train) / 60, windowCount(data.train, o.prepare),
-                  test.size(), secondsOf(test) / 60, windowCount(data.test, o.prepare),
-                  data.poseDim(), data.controlDim(), o.prepare.features.fps));
+                  o.out, trainClips.size(), secondsOf(trainClips) / 60,
+                  windowCount(data.train, o.prepare), testClips.size(), secondsOf(testClips) / 60,
+                  windowCount(data.test, o.prepare), data.poseDim(), data.controlDim(),
+                  o.prepare.features.fps));
 }
 
 }  // namespace

@@ -89,15 +89,18 @@ void checkKind(const RenderOptions& options) {
 void runRender(const Context& context, const RenderOptions& options) {
   checkKind(options);
   const Size size = parseSize(options.size);
-  const std::vector<fs::path> files = expandInputs(options.inputs);
-  std::vector<fs::path> naturalFiles;
-  if (!options.natural.empty()) naturalFiles = expandInputs(options.natural);
+  const io::Inputs inputs = io::findInputs(options.inputs);
+  const io::Inputs natural =
+      options.natural.empty() ? io::Inputs() : io::findInputs(options.natural);
+  io::InputReport report(inputs);
+  report.add(io::InputReport(natural));
   Progress progress = context.progress("rendering");
   Progress reading = progress.part(0.0, 0.1);
-  const render::SceneSpec scene = sceneOf(readAll(naturalFiles, options.read, reading),
-                                          readAll(files, options.read, reading), options);
-  std::vector<fs::path> all = naturalFiles;
-  all.insert(all.end(), files.begin(), files.end());
+  const std::vector<Clip> naturalClips = readAll(natural, options.read, report, reading);
+  const render::SceneSpec scene =
+      sceneOf(naturalClips, readAll(inputs, options.read, report, reading), options);
+  std::vector<fs::path> all = natural.paths();
+  for (const fs::path& file : inputs.paths()) all.push_back(file);
   const render::Recipe recipe = recipeOf(context, all);
   const bool still = !render::videoKind(options.out);
   int frames = 1;
@@ -113,8 +116,10 @@ void runRender(const Context& context, const RenderOptions& options) {
   }
   progress.report(1.0);
   const double fps = still ? 0.0 : options.fps;
-  context.print({{"file", options.out}, {"frames", frames}, {"fps", fps}},
-                fmt::format("{}\n", options.out));
+  Json result = {{"file", options.out}, {"frames", frames}, {"fps", fps}};
+  report.addTo(result);
+  tell(context, report);
+  context.print(result, fmt::format("{}\n", options.out));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "cli/command.h"
 #include "cli/fit_report.h"
+#include "cli/readers.h"
 #include "experiment/path_choice.h"
 #include "experiment/recipe.h"
 #include "experiment/sample_files.h"
@@ -55,7 +56,8 @@ void run(Options& o, Context& context) {
   o.path.startFromClip = o.start == "clip";
   const auto model =
       loadModel(o.model, modelFamilies(), {.weights = weightPrecisionNamed(o.weights)});
-  SampleRequest request = requestFor(*model, o.path);
+  io::InputReport report;
+  SampleRequest request = requestFor(*model, o.path, report);
   request.samples = o.samples;
   request.seed = context.seed;
   request.temperature = o.temperature;
@@ -69,7 +71,8 @@ void run(Options& o, Context& context) {
   const double fps = model->info().features.fps;
   const std::string warning = standingWarning(
       o.model, trainingPaceOf(model->info().provenance, o.model), request.path, fps);
-  if (!warning.empty() && context.ranks->first()) fmt::print(stderr, "marey: {}\n", warning);
+  if (!warning.empty()) report.add({o.path.path, "", "standing", warning});
+  tell(context, report);
   Progress progress = context.progress("sample");
   const auto begin = std::chrono::steady_clock::now();
   const SampleFiles written = writeSampleFiles(
@@ -87,8 +90,8 @@ void run(Options& o, Context& context) {
                  {"frames_per_s", frames / seconds},
                  {"peak_memory_mb", peakMemoryMb()},
                  {"seconds_each", static_cast<double>(request.path.size()) / fps}};
-  result["warnings"] = warning.empty() ? Json::array() : Json::array({warning});
   fits.addTo(result);
+  report.addTo(result);
   fits.tell(context);
   context.print(
       result, fmt::format("{} motions of {:.1f} s in {} ({:.0f} frames/s)", o.samples,
@@ -108,7 +111,7 @@ void addSampleCommand(CLI::App& app, Context& context) {
       ->add_option("--path", o->path.path,
                    "preset:NAME (still, sideways, slow, fast, backward, turn-left, turn-right, "
                    "circle, figure-eight), "
-                   "clip:FILE (that clip's own path) or a path file (JSON)")
+                   "clip:FILE (that clip's own path) or a path file (JSON, or CSV with time,x,z)")
       ->required();
   command->add_option("-n,--samples", o->samples, "Number of motions")
       ->check(CLI::Range(1, 10000000))

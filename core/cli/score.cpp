@@ -54,15 +54,17 @@ struct Scores {
 
 /// The scores of files [first, last), packed file by file. Clips are read as they are scored.
 std::vector<std::string> scoreShare(const Options& o, const MotionModel& model,
-                                    std::span<const std::filesystem::path> files,
-                                    Progress& progress) {
+                                    std::span<const io::InputFile> files, Progress& progress) {
   std::vector<std::string> out;
   std::vector<Clip> waiting;
   std::vector<size_t> clipsOf;  // of every file that waits
+  std::vector<io::InputReport> reports;
   double done = 0.0;
   for (size_t i = 0; i < files.size(); ++i) {
     progress.throwIfCancelled();
-    std::vector<Clip> clips = io::readClips(files[i], o.read);
+    std::vector<Clip> clips = reports.emplace_back().read(files[i], o.read);
+    reports.back().throwIfFailed();
+    for (const Clip& clip : clips) reports.back().resample(clip, model.info().features.fps);
     clipsOf.push_back(clips.size());
     std::move(clips.begin(), clips.end(), std::back_inserter(waiting));
     if (waiting.size() < kTogether && i + 1 < files.size()) continue;
@@ -70,22 +72,27 @@ std::vector<std::string> scoreShare(const Options& o, const MotionModel& model,
     Progress part = progress.part(done, share);
     const auto scores = scoreClips(model, waiting, o.standardised, part);
     auto next = scores.begin();
-    for (const size_t count : clipsOf) {
+    for (size_t file = 0; file < clipsOf.size(); ++file) {
       Packer packer;
-      for (size_t k = 0; k < count; ++k) pack(*next++, packer);
+      reports[file].pack(packer);
+      for (size_t k = 0; k < clipsOf[file]; ++k) pack(*next++, packer);
       out.push_back(packer.take());
     }
     waiting.clear();
     clipsOf.clear();
+    reports.clear();
     done = share;
     progress.report(done, "scoring");
   }
   return out;
 }
 
-Scores scoreFiles(const Options& o, const MotionModel& model, const Context& context) {
+Scores scoreFiles(const Options& o, const MotionModel& model, const Context& context,
+                  io::InputReport& report) {
   Progress progress = context.progress("score");
-  const auto files = expandInputs(o.clips);
+  const io::Inputs inputs = io::findInputs(o.clips);
+  report = io::InputReport(inputs);
+  const std::vector<io::InputFile>& files = inputs.files;
   const auto packed = context.ranks->gather(
       files.size(),
       [&](size_t first, size_t last, Progress& share) {
@@ -93,8 +100,13 @@ Scores scoreFiles(const Options& o, const MotionModel& model, const Context& con
       },
       progress);
   Scores out(context.json);
-  for (const std::string& file : packed)
-    for (Unpacker bytes(file); !bytes.done();) out.add(unpackScore(bytes));
+  size_t clips = 0;
+  for (const std::string& file : packed) {
+    Unpacker bytes(file);
+    report.add(io::InputReport::unpacked(bytes));
+    for (; !bytes.done(); ++clips) out.add(unpackScore(bytes));
+  }
+  if (context.ranks->first()) report.throwIfNone(clips);
   return out;
 }
 
@@ -103,7 +115,8 @@ void run(const Options& o, const Context& context) {
       loadModel(o.model, modelFamilies(), {.weights = weightPrecisionNamed(o.weights)});
   // A density per metre becomes one per centimetre, the unit of the tables.
   const double toCentimetres = model->info().poseDim * std::log(100.0);
-  Scores scores = scoreFiles(o, *model, context);
+  io::InputReport report;
+  Scores scores = scoreFiles(o, *model, context, report);
   if (!context.ranks->first()) return;
   const double mean = scores.sum / scores.frames;
   std::string& table = scores.table;
@@ -125,6 +138,8 @@ void run(const Options& o, const Context& context) {
     table += fmt::format("\nlinear-Gaussian model of the training data: {:.2f}",
                          result["linear_gaussian_nats_per_frame"].get<double>());
   }
+  report.addTo(result);
+  tell(context, report);
   context.print(result, table);
 }
 

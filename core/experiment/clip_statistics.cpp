@@ -26,14 +26,22 @@ class ClipReader {
   ClipReader(const ClipFiles& files, double fps, const Clip& first)
       : m_files(files), m_fps(fps), m_first(first) {}
 
-  const std::vector<std::filesystem::path>& files() const { return m_files.files; }
+  const std::vector<io::InputFile>& files() const { return m_files.files; }
 
-  /// Of one file, at the rate of the analysis. Throws InputError unless they are comparable.
+  /// Of one file, at the rate of the analysis; none of one that was found and cannot be read.
+  /// Throws InputError unless they are comparable.
   std::vector<Clip> read(size_t file) {
+    io::InputReport unused;
+    return read(file, unused);
+  }
+  /// The same; `report` gets what is to be told of the file.
+  std::vector<Clip> read(size_t file, io::InputReport& report) {
     if (const auto kept = m_kept.find(file); kept != m_kept.end()) return kept->second;
-    std::vector<Clip> clips = io::readClips(m_files.files[file], m_files.read);
+    std::vector<Clip> clips = report.read(m_files.files[file], m_files.read);
+    report.throwIfFailed();
     size_t bytes = 0;
     for (Clip& clip : clips) {
+      report.resample(clip, m_fps);
       clip = resampled(clip, m_fps);
       stats::requireComparable(clip, m_first);
       bytes += bytesOf(clip);
@@ -58,6 +66,7 @@ struct Overview {
   stats::SetFacts facts;
   double seconds = 0.0;
   std::vector<size_t> clipsBefore;  ///< clips in the files before each file
+  io::InputReport inputs;           ///< at the first rank only
 };
 
 /// Runs `work` on the files of a share, with progress.
@@ -82,7 +91,9 @@ Overview overviewOf(ClipReader& reader, const std::vector<int>& feet, Ranks& ran
         stats::SetFacts heights;
         auto out = eachFile(first, last, share, [&](size_t file) {
           Packer packer;
-          const std::vector<Clip> clips = reader.read(file);
+          io::InputReport report;
+          const std::vector<Clip> clips = reader.read(file, report);
+          report.pack(packer);
           packer.add(clips.size());
           for (const Clip& clip : clips) {
             stats::SetFacts facts = stats::factsOf(clip, feet);
@@ -98,11 +109,13 @@ Overview overviewOf(ClipReader& reader, const std::vector<int>& feet, Ranks& ran
         return out;
       },
       progress);
+  io::InputReport inputs;
   const std::string told = ranks.fromFirst([&] {
     Overview all;
     for (const std::string& file : packed) {
       all.clipsBefore.push_back(all.facts.clips);
       Unpacker bytes(file);
+      inputs.add(io::InputReport::unpacked(bytes));
       for (auto clips = bytes.number<size_t>(); clips > 0; --clips) {
         all.seconds += bytes.number<double>();
         all.facts.add(stats::SetFacts::unpacked(bytes));
@@ -116,6 +129,7 @@ Overview overviewOf(ClipReader& reader, const std::vector<int>& feet, Ranks& ran
   });
   Unpacker bytes(told);
   Overview out;
+  out.inputs = std::move(inputs);
   out.seconds = bytes.number<double>();
   out.clipsBefore = bytes.list<size_t>();
   out.facts = stats::SetFacts::unpacked(bytes);
@@ -146,9 +160,9 @@ stats::StatisticSet partsOf(ClipReader& reader, const Overview& overview,
   return out;
 }
 
-std::vector<std::string> stems(const std::vector<std::filesystem::path>& files) {
+std::vector<std::string> stems(const std::vector<io::InputFile>& files) {
   std::vector<std::string> out;
-  for (const auto& file : files) out.push_back(file.stem().string());
+  for (const io::InputFile& file : files) out.push_back(file.path.stem().string());
   return out;
 }
 
@@ -182,13 +196,13 @@ std::vector<int> controlsByFile(const Overview& overview, size_t files,
 /// Controls of both sides. Files of one name share theirs where the same control is compared; other
 /// natural clips have one each.
 void setControls(const ClipStatisticsRequest& request, const Overview& overview,
-                 const Overview& natural, const std::vector<std::filesystem::path>& naturalFiles,
+                 const Overview& natural, const std::vector<io::InputFile>& naturalFiles,
                  stats::StatisticSetting& setting) {
   std::map<std::filesystem::path, int> folders;
   std::map<std::string, int> names;
   setting.controls =
       controlsByFile(overview, request.clips.files.size(), [&](size_t file, size_t clip) {
-        const auto& path = request.clips.files[file];
+        const std::filesystem::path& path = request.clips.files[file].path;
         if (request.against == NaturalChoice::SameControl)
           return names.emplace(path.stem().string(), static_cast<int>(names.size())).first->second;
         if (request.controls == ControlRule::One) return 0;
@@ -198,16 +212,22 @@ void setControls(const ClipStatisticsRequest& request, const Overview& overview,
   const int first = 1 + *std::max_element(setting.controls.begin(), setting.controls.end());
   setting.naturalControls =
       controlsByFile(natural, naturalFiles.size(), [&](size_t file, size_t clip) {
-        const auto shared = names.find(naturalFiles[file].stem().string());
+        const auto shared = names.find(naturalFiles[file].path.stem().string());
         return shared != names.end() ? shared->second : first + static_cast<int>(clip);
       });
 }
 
+/// Of the first file that can be read.
 Clip firstClip(const ClipFiles& clips) {
-  std::vector<Clip> found = io::readClips(clips.files.front(), clips.read);
-  if (found.empty())
-    throw InputError({.path = clips.files.front().string()}, "at least one clip", "none");
-  return resampled(found.front(), clips.fps > 0.0 ? clips.fps : found.front().fps);
+  io::InputReport report;
+  for (const io::InputFile& file : clips.files) {
+    const std::vector<Clip> found = report.read(file, clips.read);
+    report.throwIfFailed();
+    if (!found.empty())
+      return resampled(found.front(), clips.fps > 0.0 ? clips.fps : found.front().fps);
+  }
+  report.throwIfNone(0);
+  throw InputError({.path = "inputs"}, "at least one clip", "none");
 }
 
 /// 1.0 cm/s for people, 0.3 cm/s for dogs, as the papers have it.
@@ -255,6 +275,8 @@ ClipStatistics clipStatistics(const ClipStatisticsRequest& request, Ranks& ranks
   if (out.compared)
     natural = partsOf(naturalReader, naturalOverview, setting.ofNatural(), ranks, naturalParting);
   if (!ranks.first()) return out;
+  out.inputs = overview.inputs;
+  out.inputs.add(naturalOverview.inputs);
   out.clips = overview.facts.clips;
   out.seconds = overview.seconds;
   if (!out.feet.empty()) {

@@ -2,19 +2,18 @@
 // grow with the length of clips, and results do not depend on the number of processes.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/ranks.h"
 #include "experiment/comparison.h"
-#include "io/format.h"
+#include "io/input_report.h"
 #include "stats/statistic.h"
 
 namespace marey {
 
 struct ClipFiles {
-  std::vector<std::filesystem::path> files;
+  std::vector<io::InputFile> files;
   io::ReadOptions read;
   double fps = 0.0;  ///< clips are resampled to it; 0: the rate of the first one
 };
@@ -42,6 +41,7 @@ struct ClipStatistics {
   std::vector<int> feet;
   std::optional<stats::FootstepCurve> footsteps;  ///< none without feet
   std::vector<stats::StatisticResult> results;
+  io::InputReport inputs;  ///< doubts of the clips of both sets, files found that cannot be read
 };
 
 /// Files are read twice where they are many: once for what the set says as a whole, once for what

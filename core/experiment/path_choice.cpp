@@ -1,10 +1,13 @@
 #include "experiment/path_choice.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "io/clip_io.h"
+#include "model/training_pace.h"
 #include "motion/path.h"
+#include "motion/resample.h"
 
 namespace marey {
 namespace {
@@ -13,13 +16,21 @@ constexpr double kPresetSeconds = 10.0;
 constexpr double kQuadrupedScale =
     0.6;  ///< a dog walks the papers' paths at this share of a man's speed
 
+std::vector<WayPoint> wayPointsOf(const PathChoice& choice) {
+  return choice.wayPoints.empty() ? readPathFile(choice.folder / choice.path) : choice.wayPoints;
+}
+
+bool isPreset(const PathChoice& choice) {
+  return choice.wayPoints.empty() && choice.path.starts_with("preset:");
+}
+
 std::vector<RootFrame> pathFrames(const PathChoice& choice, double fps, double presetScale) {
-  if (!choice.wayPoints.empty()) return samplePath(choice.wayPoints, fps, choice.path);
-  if (choice.path.starts_with("preset:"))
+  if (isPreset(choice))
     return presetPath(choice.path.substr(7), choice.seconds > 0 ? choice.seconds : kPresetSeconds,
                       fps, presetScale);
-  const auto file = choice.folder / choice.path;
-  return samplePath(readPathFile(file), fps, file.string());
+  const std::string origin =
+      choice.wayPoints.empty() ? (choice.folder / choice.path).string() : choice.path;
+  return samplePath(wayPointsOf(choice), fps, origin);
 }
 
 bool isClip(const PathChoice& choice) {
@@ -41,14 +52,38 @@ void shorten(std::vector<RootFrame>& path, const PathChoice& choice, double fps)
   path.resize(std::min(wanted, path.size()));
 }
 
+Clip onlyClip(const std::filesystem::path& file, io::InputReport& report) {
+  std::vector<Clip> clips = report.read({.path = file, .named = true}, {});
+  report.throwIfFailed();
+  if (clips.size() != 1) throwInput({.path = file.string()}, "one clip", "{} clips", clips.size());
+  return std::move(clips.front());
+}
+
+/// Far beyond what it has learnt a model gives poses, but no motion.
+void addSpeedDoubt(const MotionModel& model, const PathChoice& choice,
+                   const std::vector<RootFrame>& path, io::InputReport& report) {
+  constexpr double kSlack = 1.1;
+  const auto pace = trainingPaceOf(model.info().provenance, model.info().variant);
+  if (!pace) return;
+  double fastest = 0.0;
+  for (size_t t = 1; t < path.size(); ++t)
+    fastest = std::max(fastest, std::hypot(path[t].x - path[t - 1].x, path[t].z - path[t - 1].z));
+  fastest *= model.info().features.fps;
+  if (fastest > kSlack * pace->speedMS.highest)
+    report.add({choice.path, "", "too_fast",
+                fmt::format("goes at up to {:.2f} m/s; the fastest of the data that the model was "
+                            "trained on is {:.2f} m/s (99.5 % of the frames are below)",
+                            fastest, pace->speedMS.highest)});
+}
+
 }  // namespace
 
 std::vector<RootFrame> rootFramesOf(const PathChoice& choice, double fps) {
   std::vector<RootFrame> out;
   if (isClip(choice)) {
     const FeatureSpec spec{.fps = fps};
-    const FeatureSequence features = extractFeatures(io::readClip(clipFile(choice)), spec);
-    out = trajectoryFromControl(features.control, features.start);
+    const auto path = rootPath(resampled(io::readClip(clipFile(choice)), fps), spec);
+    out = trajectoryFromControl(controlFromTrajectory(path), path.front());
   } else {
     out = pathFrames(choice, fps, 1.0);
   }
@@ -57,16 +92,26 @@ std::vector<RootFrame> rootFramesOf(const PathChoice& choice, double fps) {
 }
 
 SampleRequest requestFor(const MotionModel& model, const PathChoice& choice) {
+  io::InputReport unused;
+  return requestFor(model, choice, unused);
+}
+
+SampleRequest requestFor(const MotionModel& model, const PathChoice& choice,
+                         io::InputReport& report) {
   const double fps = model.info().features.fps;
   SampleRequest out;
   if (isClip(choice)) {
-    out = requestAlongClip(model, io::readClip(clipFile(choice)), choice.startFromClip);
+    out = requestAlongClip(model, onlyClip(clipFile(choice), report), choice.startFromClip);
   } else {
     if (choice.startFromClip) throw UsageError("--start clip: needs a path of the form clip:FILE");
     const bool quadruped = model.info().skeleton && rolesOf(*model.info().skeleton).quadruped;
     out.path = pathFrames(choice, fps, quadruped ? kQuadrupedScale : 1.0);
+    if (!isPreset(choice))
+      for (const std::string& remark : pathRemarks(wayPointsOf(choice)))
+        report.add({choice.path, "", "no_effect", remark});
   }
   shorten(out.path, choice, fps);
+  addSpeedDoubt(model, choice, out.path, report);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "io/input_report.h"
 #include "model/sampler.h"
 #include "motion/path.h"
 
@@ -22,5 +23,9 @@ struct PathChoice {
 std::vector<RootFrame> rootFramesOf(const PathChoice& choice, double fps);
 /// The request's path, and start poses of a clip. Throws UsageError or InputError.
 SampleRequest requestFor(const MotionModel& model, const PathChoice& choice);
+/// The same; `report` gets the doubts of a clip, what of a path file has no effect, and a path that
+/// is faster than what the model was trained on.
+SampleRequest requestFor(const MotionModel& model, const PathChoice& choice,
+                         io::InputReport& report);
 
 }  // namespace marey

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numbers>
 
@@ -6,6 +7,7 @@
 #include "io/asf_amc.h"
 #include "io/euler_order.h"
 #include "io/normalise.h"
+#include "io/plain_text.h"
 #include "io/text.h"
 
 namespace marey::io {
@@ -15,9 +17,9 @@ constexpr double kCmuFps = 120.0;
 
 class AmcParser {
  public:
-  AmcParser(std::string_view bytes, const std::string& origin, const AsfSkeleton& asf,
+  AmcParser(std::string_view text, const std::string& origin, const AsfSkeleton& asf,
             const std::vector<std::vector<size_t>>& turns)
-      : m_lines(bytes, origin), m_asf(asf), m_turns(turns), m_degrees(asf.degrees) {
+      : m_lines(text, origin), m_asf(asf), m_turns(turns), m_degrees(asf.degrees) {
     for (int j = 0; j < asf.skeleton.jointCount(); ++j) {
       m_joints.emplace(asf.skeleton.names[static_cast<size_t>(j)], j);
       if (!asf.channels[static_cast<size_t>(j)].empty()) ++m_moving;
@@ -28,7 +30,7 @@ class AmcParser {
   JointTransforms parse() {
     while (const auto line = m_lines.nextFilled()) {
       std::string_view rest = trim(*line);
-      if (rest.starts_with('#')) continue;
+      if (isComment(rest)) continue;
       if (rest.starts_with(':'))
         setting(rest);
       else if (const auto number = parseNumber(rest))
@@ -41,10 +43,39 @@ class AmcParser {
     return std::move(m_out);
   }
 
+  /// As the file states it.
+  std::optional<double> fps() const { return m_fps; }
+  const std::vector<std::string>& notes() const { return m_notes; }
+
  private:
-  void setting(std::string_view key) {
-    if (sameIgnoringCase(key, ":degrees")) m_degrees = true;
-    if (sameIgnoringCase(key, ":radians")) m_degrees = false;
+  void setting(std::string_view rest) {
+    const std::string_view key = takeWord(rest);
+    if (sameIgnoringCase(key, ":fully-specified")) return;
+    if (sameIgnoringCase(key, ":degrees"))
+      m_degrees = true;
+    else if (sameIgnoringCase(key, ":radians"))
+      m_degrees = false;
+    else if (isRateKey(key))
+      m_fps = rateOf(rest);
+    else
+      m_notes.push_back(fmt::format("line {}: {} is not read", m_lines.line(),
+                                    excerpt(std::string(key) + std::string(rest))));
+  }
+
+  static bool isRateKey(std::string_view key) {
+    if (key.ends_with(':')) key.remove_suffix(1);
+    static constexpr std::string_view keys[] = {":samples-per-second", ":frames-per-second",
+                                                ":frame-rate", ":framerate", ":fps"};
+    return std::any_of(std::begin(keys), std::end(keys),
+                       [key](std::string_view known) { return sameIgnoringCase(key, known); });
+  }
+
+  double rateOf(std::string_view text) const {
+    const std::optional<double> rate = parseNumber(trim(text));
+    if (!rate || !(*rate > 0.0))
+      throw InputError(m_lines.place(), "a positive number of samples per second",
+                       excerpt(trim(text)));
+    return *rate;
   }
 
   void startFrame(double number) {
@@ -91,7 +122,10 @@ class AmcParser {
     m_values.clear();
     for (const AsfChannel& channel : channels) {
       m_values.push_back(take(j, rest));
-      if (!channel.rotation) shift[channel.axis] += m_values.back();
+      if (channel.kind == AsfChannel::Kind::Shift) shift[channel.axis] += m_values.back();
+      if (channel.kind == AsfChannel::Kind::Length && m_values.back() != 0.0)
+        throwInput(place(j), "0 for the degree of freedom 'l' (the bone's length)", "{}",
+                   m_values.back());
     }
     for (const size_t turn : m_turns[j]) {
       const size_t c = channels.size() - 1 - turn;
@@ -132,6 +166,8 @@ class AmcParser {
   size_t m_count = 0;
   double m_number = 0.0;
   int64_t m_frame = 0;
+  std::optional<double> m_fps;
+  std::vector<std::string> m_notes;
   JointTransforms m_out;
 };
 
@@ -139,7 +175,7 @@ class AmcParser {
 std::vector<int> intrinsicAxes(const std::vector<AsfChannel>& channels) {
   std::vector<int> out;
   for (auto it = channels.rbegin(); it != channels.rend(); ++it)
-    out.push_back(it->rotation ? it->axis : -1);
+    out.push_back(it->kind == AsfChannel::Kind::Turn ? it->axis : -1);
   return out;
 }
 
@@ -151,13 +187,13 @@ size_t commonPrefix(const std::string& a, const std::string& b) {
 }  // namespace
 
 int canReadAmc(std::string_view head) {
-  LineReader lines(head, {});
+  const PlainText plain(head);
+  LineReader lines(plain.text(), {});
   while (const auto line = lines.nextFilled()) {
     const std::string_view text = trim(*line);
-    if (text.starts_with('#')) continue;
     for (const std::string_view key : {":FULLY-SPECIFIED", ":DEGREES", ":RADIANS"})
       if (sameIgnoringCase(text, key)) return 95;
-    return 0;
+    if (!text.starts_with(':') && !isComment(text)) return 0;
   }
   return 0;
 }
@@ -172,18 +208,22 @@ Clip parseAmc(std::string_view bytes, const std::string& origin, const AsfSkelet
     turns.push_back(turnsInOrder(axes, options.eulerOrder));
     clip.source.eulerOrders.push_back(orderText(axes, turns.back()));
   }
-  clip.transforms = AmcParser(bytes, origin, asf, turns).parse();
+  const PlainText plain(bytes);
+  AmcParser parser(plain.text(), origin, asf, turns);
+  clip.transforms = parser.parse();
   clip.skeleton = std::make_shared<const Skeleton>(asf.skeleton);
-  clip.fps = kCmuFps;
+  clip.fps = parser.fps().value_or(kCmuFps);
   clip.source.path = origin;
   clip.source.format = "amc";
-  clip.source.fps = kCmuFps;
-  if (!options.fps)
+  clip.source.fps = clip.fps;
+  for (const auto* notes : {&asf.notes, &plain.notes(), &parser.notes()})
+    clip.source.notes.insert(clip.source.notes.end(), notes->begin(), notes->end());
+  if (!options.fps && !parser.fps())
     clip.source.notes.push_back(
         "AMC states no frame rate: 120 is assumed, as in the CMU data base");
   if (!options.eulerOrder.empty())
     clip.source.notes.push_back("Euler order " + options.eulerOrder + " as given");
-  return normalised(std::move(clip), {.unit = asf.unit, .up = "y"}, options);
+  return normalised(std::move(clip), {.unit = asf.unit, .up = "y", .unitFromFile = true}, options);
 }
 
 std::filesystem::path asfBeside(const std::filesystem::path& amc) {

@@ -4,8 +4,10 @@
 // A joint of Marey stands where the bone of that name begins (so 'lfoot' is the left ankle), as in
 // BVH conversions of the same takes; bones without children get an end site. With the bone's axis
 // turn C and the turn M of a frame, the local rotation is C M C^-1; at rest every joint's frame is
-// that of the world. Turns are applied in the order listed (RX RY RZ: R = Rz Ry Rx). The header's
-// length L gives the unit: 1 = (1 / L) inch.
+// that of the world. Turns are applied in the order listed (RX RY RZ: R = Rz Ry Rx). The root's
+// orientation is such an axis C, no turn of the whole body. The header's length L gives the unit,
+// 1 = (1 / L) inch, unless that makes no person and another unit does (people write lengths in
+// centimetres or inches and the factor for show): see checkedUnit.
 #pragma once
 
 #include <array>
@@ -18,8 +20,8 @@
 namespace marey::io {
 
 struct AsfChannel {
-  int axis = 0;
-  bool rotation = false;
+  enum class Kind { Shift, Turn, Length } kind = Kind::Shift;
+  int axis = 0;  ///< of shifts and turns
 };
 
 /// Lengths in file units; joints in the order of the hierarchy, joint 0 is "root".
@@ -29,14 +31,17 @@ struct AsfSkeleton {
   std::vector<Quatd> axes;                        ///< C of every joint
   LengthUnit unit;
   bool degrees = true;
+  std::vector<std::string> notes;
 };
 
 /// Throws InputError with the line.
 AsfSkeleton parseAsf(std::string_view bytes, const std::string& origin);
 
 int canReadAmc(std::string_view head);
-/// Every frame must give every degree of freedom. The format states no rate: 120 is assumed, as in
-/// the CMU data base, and noted. Throws InputError with the line.
+/// Every frame must give every degree of freedom. Where the file has no line ':SAMPLES-PER-SECOND
+/// N' (or ':FPS N'), 120 is assumed, as in the CMU data base, and noted. Degree of freedom 'l' (the
+/// bone's length) must be 0: whether other values add to the length or replace it is not known.
+/// Throws InputError with the line.
 Clip parseAmc(std::string_view bytes, const std::string& origin, const AsfSkeleton& asf,
               const ReadOptions& options = {});
 /// Takes options.asf, else the ASF beside it whose name shares the longest beginning.

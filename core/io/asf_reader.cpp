@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <set>
 
 #include "io/asf_amc.h"
+#include "io/plain_text.h"
 #include "io/text.h"
 
 namespace marey::io {
@@ -31,7 +34,7 @@ Quatd fixedAxes(const Vec3d& angles, std::string_view order) {
 
 class AsfParser {
  public:
-  AsfParser(std::string_view bytes, const std::string& origin) : m_lines(bytes, origin) {}
+  AsfParser(std::string_view text, const std::string& origin) : m_lines(text, origin) {}
 
   AsfSkeleton parse() {
     while (nextLine()) section();
@@ -64,7 +67,11 @@ class AsfParser {
     if (sameIgnoringCase(key, ":hierarchy")) return hierarchy();
     if (!key.starts_with(':'))
       throw InputError(m_lines.place(), "a section such as :bonedata", excerpt(key));
-    while (nextInSection()) {  // version, name, documentation, skin: nothing to keep
+    static constexpr std::string_view kSilent[] = {":version", ":name", ":documentation", ":skin"};
+    if (std::none_of(std::begin(kSilent), std::end(kSilent),
+                     [key](std::string_view known) { return sameIgnoringCase(key, known); }))
+      m_out.notes.push_back(fmt::format("{}: section {} is not read", m_lines.place().text(), key));
+    while (nextInSection()) {  // nothing to keep
     }
   }
 
@@ -129,19 +136,26 @@ class AsfParser {
                          excerpt(key));
     }
     m_root.axis = fixedAxes(orientation * angleUnit(), order);
+    if (!orientation.isZero(0.0))
+      m_out.notes.push_back(
+          fmt::format("root orientation ({:g}, {:g}, {:g}) is read as the axes of "
+                      "the root's turns, not as a turn of the whole body",
+                      orientation[0], orientation[1], orientation[2]));
   }
 
   std::vector<AsfChannel> channels() {
     std::vector<AsfChannel> out;
     for (std::string_view word = takeWord(m_rest); !word.empty(); word = takeWord(m_rest)) {
-      static constexpr std::string_view names[] = {"tx", "ty", "tz", "rx", "ry", "rz"};
+      using Kind = AsfChannel::Kind;
+      static constexpr std::string_view names[] = {"tx", "ty", "tz", "rx", "ry", "rz", "l"};
+      static constexpr Kind kinds[] = {Kind::Shift, Kind::Turn, Kind::Length};
       int found = -1;
-      for (int i = 0; i < 6; ++i)
+      for (int i = 0; i < 7; ++i)
         if (sameIgnoringCase(word, names[i])) found = i;
       if (found < 0)
-        throw InputError(m_lines.place(), "degrees of freedom among tx ty tz rx ry rz",
+        throw InputError(m_lines.place(), "degrees of freedom among tx ty tz rx ry rz l",
                          excerpt(word));
-      out.push_back({found % 3, found >= 3});
+      out.push_back({kinds[found / 3], found % 3});
     }
     return out;
   }
@@ -254,7 +268,10 @@ class AsfParser {
 }  // namespace
 
 AsfSkeleton parseAsf(std::string_view bytes, const std::string& origin) {
-  return AsfParser(bytes, origin).parse();
+  const PlainText plain(bytes);
+  AsfSkeleton out = AsfParser(plain.text(), origin).parse();
+  for (const std::string& note : plain.notes()) out.notes.push_back(origin + ": " + note);
+  return out;
 }
 
 }  // namespace marey::io

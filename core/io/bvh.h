@@ -1,5 +1,5 @@
 // Biovision hierarchies: text with a tree of joints, channels in any order per joint, degrees,
-// and one line of numbers per frame. The format states no unit.
+// and a row of numbers per frame. The format states no unit.
 #pragma once
 
 #include "io/format.h"
@@ -7,10 +7,18 @@
 namespace marey::io {
 
 int canReadBvh(std::string_view head);
-/// One clip. `origin` names the bytes in errors. Positions channels replace the joint's offset;
-/// rotation channels turn in the order listed. Frame times rounded in the file are snapped to the
-/// common rate they stand for, repeated joint names are numbered; both are noted.
-/// Throws InputError with the line.
+/// A clip for every ROOT that is a body (one with at most a quarter of the joints of the largest is
+/// a prop: left out and noted), named after the file and, where there are several, the root. Files
+/// that were put together give the clips of each. `origin` names the bytes in errors.
+///
+/// Nothing is tied to lines, but see readBvhMotion. Position channels replace the joint's offset;
+/// rotation channels turn in the order listed. What is read though it is not quite as the format
+/// has it is noted: line ends and encodings (PlainText), remarks, text before and after, frame
+/// counts, frame times rounded in the file (snapped to the common rate they stand for), repeated
+/// joint names (numbered), joints whose offsets are zero. Throws InputError with the line.
+std::vector<Clip> parseBvhClips(std::string_view bytes, const std::string& origin,
+                                const ReadOptions& options = {});
+/// The only clip. Throws InputError, also where there are several.
 Clip parseBvh(std::string_view bytes, const std::string& origin, const ReadOptions& options = {});
 std::vector<Clip> readBvh(std::string_view bytes, const std::filesystem::path& path,
                           const ReadOptions& options);

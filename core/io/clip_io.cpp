@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <iterator>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "io/asf_amc.h"
 #include "io/bvh.h"
 #include "io/csv_writer.h"
@@ -19,7 +21,7 @@
 namespace marey::io {
 namespace {
 
-constexpr size_t kHeadBytes = 4096;
+constexpr size_t kHeadBytes = 16384;
 
 std::string lowerExtension(const std::filesystem::path& path) {
   std::string out = path.extension().string();
@@ -54,6 +56,24 @@ const ClipFormat& formatForWriting(const std::filesystem::path& path, const Writ
   throw UsageError(
       fmt::format("{}: expected the extension of a format that can be written ({}), found '{}'",
                   path.string(), formatNames(true), path.extension().string()));
+}
+
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+/// What a file is that no reader takes; formats of motion are said not to be read.
+std::string foundInstead(std::string_view bytes, const std::filesystem::path& path) {
+  const std::optional<FileKind> kind = fileKind(bytes.substr(0, kFileHeadBytes));
+  if (kind)
+    return kind->text() + (isUnreadMotion(kind->id) ? ": " + upper(kind->id) + " is not read" : "");
+  const std::string extension = lowerExtension(path);
+  std::string out = describeContent(bytes.substr(0, kFileHeadBytes));
+  if (!extension.empty() && isUnreadMotion(extension.substr(1)))
+    out += ": " + upper(extension.substr(1)) + " is not read";
+  return out;
 }
 
 }  // namespace
@@ -107,14 +127,25 @@ std::string readHead(const std::filesystem::path& path) {
   return head;
 }
 
-bool isMotionFile(const std::filesystem::path& path) {
+bool hasReadableExtension(const std::filesystem::path& path) {
   const std::string extension = lowerExtension(path);
   const auto& formats = clipFormats();
-  const bool named = std::any_of(formats.begin(), formats.end(), [&](const ClipFormat& f) {
+  return std::any_of(formats.begin(), formats.end(), [&](const ClipFormat& f) {
     return f.read != nullptr && hasExtension(f, extension);
   });
+}
+
+bool isUnreadMotion(std::string_view format) {
+  static constexpr std::string_view known[] = {
+      "c3d",   "fbx", "trc", "tsv", "vmd",  "usd",  "usda", "usdc",    "usdz",
+      "blend", "abc", "dae", "glb", "gltf", "htr",  "mvnx", "mot",     "sto",
+      "vsk",   "v",   "asf", "bip", "tak",  "vrma", "anim", "opensim", "x3d"};
+  return std::find(std::begin(known), std::end(known), format) != std::end(known);
+}
+
+bool isMotionFile(const std::filesystem::path& path) {
   std::error_code ec;
-  return named && std::filesystem::is_regular_file(path, ec) &&
+  return hasReadableExtension(path) && std::filesystem::is_regular_file(path, ec) &&
          formatOfContent(readHead(path)) != nullptr;
 }
 
@@ -123,7 +154,7 @@ std::vector<Clip> readClips(const std::filesystem::path& path, const ReadOptions
   const ClipFormat* format = formatOfContent(std::string_view(bytes).substr(0, kHeadBytes));
   if (format == nullptr)
     throw InputError({.path = path.string()}, "a motion file (" + formatNames(false) + ")",
-                     bytes.empty() ? "an empty file" : "a file that begins with " + excerpt(bytes));
+                     foundInstead(bytes, path));
   return format->read(bytes, path, options);
 }
 

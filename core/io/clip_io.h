@@ -17,6 +17,11 @@ const ClipFormat* formatOfContent(std::string_view head);
 const ClipFormat& formatByName(const std::string& name);
 /// Whether a file has the extension and the first bytes of a motion format.
 bool isMotionFile(const std::filesystem::path& path);
+/// Whether the name has the extension of a format that is read.
+bool hasReadableExtension(const std::filesystem::path& path);
+/// Whether an extension (lower case, without its dot) or the id of a FileKind is that of a motion
+/// format that is not read: "c3d", "fbx", "trc", ...
+bool isUnreadMotion(std::string_view format);
 /// First bytes of a file, as formatOfContent wants them. Throws FileError.
 std::string readHead(const std::filesystem::path& path);
 

@@ -8,6 +8,7 @@
 #include "base/json.h"
 #include "io/export_record.h"
 #include "io/normalise.h"
+#include "io/utf8_names.h"
 
 namespace marey::io {
 namespace {
@@ -29,19 +30,20 @@ LengthUnit csvUnit(const WriteOptions& options) {
 
 std::string longText(const Clip& clip, const std::string& unit) {
   std::string out = fmt::format("frame,time_s,joint,x_{0},y_{0},z_{0}\n", unit);
+  const std::vector<std::string> names = utf8Names(clip.skeleton->names);
   for (int t = 0; t < clip.frameCount(); ++t)
     for (int j = 0; j < clip.jointCount(); ++j) {
       const Vec3& p = clip.at(t, j);
       fmt::format_to(std::back_inserter(out), "{},{:.9g},{},{:.{}g},{:.{}g},{:.{}g}\n", t,
-                     t / clip.fps, csvField(clip.skeleton->names[static_cast<size_t>(j)]), p.x(),
-                     kDigits, p.y(), kDigits, p.z(), kDigits);
+                     t / clip.fps, csvField(names[static_cast<size_t>(j)]), p.x(), kDigits, p.y(),
+                     kDigits, p.z(), kDigits);
     }
   return out;
 }
 
 std::string wideText(const Clip& clip) {
   std::string out = "time";
-  for (const std::string& name : clip.skeleton->names)
+  for (const std::string& name : utf8Names(clip.skeleton->names))
     for (const char axis : {'X', 'Y', 'Z'})
       out += "," + csvField(name + "_" + std::string{axis} + "position");
   for (int t = 0; t < clip.frameCount(); ++t) {

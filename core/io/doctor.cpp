@@ -1,5 +1,6 @@
 #include "io/doctor.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -16,6 +17,7 @@ constexpr double kSkateShare = 0.2;
 /// The window of the papers' models; shorter clips are padded and masked there.
 constexpr double kWindowS = 4.0;
 constexpr double kShortS = 1.0;
+constexpr double kLowFps = 10.0;
 
 /// The first of the reader's notes that begins so, or empty.
 std::string noteBeginning(const Clip& clip, const std::string& prefix) {
@@ -36,19 +38,18 @@ Finding upFinding(const Clip& clip, const UpGuess& guess) {
   return {clip.source.up, guessed ? guess.evidence : "the format fixes it"};
 }
 
-void addReaderFaults(const Clip& clip, std::vector<Fault>& out) {
-  for (const std::string& note : clip.source.notes) {
-    if (note.starts_with("frame time "))
-      out.push_back({"rounded_frame_time", Severity::Note, note, std::nullopt});
-    if (note.find("a second joint '") != std::string::npos)
-      out.push_back({"repeated_name", Severity::Warning, note, std::nullopt});
-    if (note.find("an uncertain guess") != std::string::npos)
-      out.push_back({"unit_uncertain", Severity::Warning, note, std::nullopt});
-  }
+/// Strides are judged in metres, so the unit has to be sure.
+void addRateDoubt(const Clip& clip, const SkeletonRoles& roles, std::vector<Fault>& out) {
+  if (std::any_of(out.begin(), out.end(),
+                  [](const Fault& f) { return f.kind == "unit_uncertain"; }))
+    return;
+  if (auto fault = doubtfulRate(clip, roles)) out.push_back(*std::move(fault));
 }
 
 void addBodyFaults(const DoctorReport& report, const UpGuess& up, std::vector<Fault>& out) {
-  if (up.evidence.starts_with("from feet") && !(up.up == "y" && up.certain))
+  const bool told =
+      std::any_of(out.begin(), out.end(), [](const Fault& f) { return f.kind == "up_uncertain"; });
+  if (!told && up.evidence.starts_with("from feet") && !(up.up == "y" && up.certain))
     out.push_back({"up_uncertain", Severity::Warning,
                    "after conversion " + up.evidence + ", expected about (0, 1, 0)", std::nullopt});
   if (report.sides.value == "swapped")
@@ -63,6 +64,11 @@ void addBodyFaults(const DoctorReport& report, const UpGuess& up, std::vector<Fa
                    fmt::format("feet slide in {:.0f} % of the frames near the floor",
                                100.0 * *report.footSkateShare),
                    std::nullopt});
+  if (report.fps < kLowFps)
+    out.push_back(
+        {"low_rate", Severity::Note,
+         fmt::format("{:g} frames per second: key frames rather than a recording", report.fps),
+         std::nullopt});
   if (report.seconds < kWindowS)
     out.push_back({"short_clip", report.seconds < kShortS ? Severity::Warning : Severity::Note,
                    fmt::format("{:.2f} s, shorter than a training window of {:g} s", report.seconds,
@@ -87,15 +93,15 @@ DoctorReport unreadable(const std::filesystem::path& path, const std::string& me
   return out;
 }
 
-Json optionalNumber(const std::optional<double>& value) {
-  return value ? Json(*value) : Json();
+/// A note that stands nowhere else in the report.
+bool isOnlyNote(const DoctorReport& r, const std::string& note) {
+  return note != r.unit.evidence && note != r.up.evidence &&
+         std::none_of(r.faults.begin(), r.faults.end(),
+                      [&note](const Fault& f) { return f.evidence == note; });
 }
 
-Json toJson(const Fault& fault) {
-  Json out = {
-      {"kind", fault.kind}, {"severity", name(fault.severity)}, {"evidence", fault.evidence}};
-  if (fault.frame) out["frame"] = *fault.frame;
-  return out;
+Json optionalNumber(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
 }
 
 }  // namespace
@@ -135,11 +141,24 @@ DoctorReport examineClip(const Clip& clip) {
   out.footSkateShare = footSkateShare(clip, roles);
   out.notes = clip.source.notes;
   addReaderFaults(clip, out.faults);
+  if (auto fault = calibrationPose(clip)) out.faults.push_back(*std::move(fault));
+  addRateDoubt(clip, roles, out.faults);
   checkTeleports(clip, out.faults);
   checkSpikes(clip, out.faults);
   checkRepeats(clip, out.faults);
   if (out.floorM) checkFloor(clip, *out.floorM, out.faults);
   addBodyFaults(out, up, out.faults);
+  return out;
+}
+
+std::vector<Fault> doubtsOf(const Clip& clip) {
+  std::vector<Fault> out;
+  addReaderFaults(clip, out);
+  std::erase_if(out, [](const Fault& f) {
+    return f.severity != Severity::Warning || f.kind == "repeated_name";
+  });
+  if (auto fault = calibrationPose(clip)) out.push_back(*std::move(fault));
+  addRateDoubt(clip, rolesOf(*clip.skeleton), out);
   return out;
 }
 
@@ -152,6 +171,13 @@ std::vector<DoctorReport> examine(const std::filesystem::path& path, const ReadO
   } catch (const FileError& e) {
     return {unreadable(path, e.what())};
   }
+  return out;
+}
+
+Json toJson(const Fault& fault) {
+  Json out = {
+      {"kind", fault.kind}, {"severity", name(fault.severity)}, {"evidence", fault.evidence}};
+  if (fault.frame) out["frame"] = *fault.frame;
   return out;
 }
 
@@ -203,6 +229,8 @@ std::string toText(const DoctorReport& r) {
     out +=
         fmt::format("  {:9} {}{}: {}\n", name(fault.severity), fault.kind,
                     fault.frame ? fmt::format(" at frame {}", *fault.frame) : "", fault.evidence);
+  for (const std::string& note : r.notes)
+    if (isOnlyNote(r, note)) out += fmt::format("  read      {}\n", note);
   if (r.faults.empty()) out += "  no fault found\n";
   return out;
 }

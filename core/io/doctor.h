@@ -19,7 +19,8 @@ struct Fault {
   std::string kind;  ///< "unreadable", "teleport", "spike", "frozen", "duplicate_frames",
                      ///< "swapped_sides", "below_floor", "floor_offset", "bone_drift",
                      ///< "foot_skate", "rounded_frame_time", "short_clip", "unit_uncertain",
-                     ///< "up_uncertain", "repeated_name"
+                     ///< "up_uncertain", "repeated_name", "frame_count", "left_out",
+                     ///< "calibration_pose", "rate_doubtful", "low_rate", "root_orientation"
   Severity severity = Severity::Warning;
   std::string evidence;
   std::optional<int> frame;  ///< 1-based, where it begins
@@ -64,6 +65,12 @@ std::vector<DoctorReport> examine(const std::filesystem::path& path,
                                   const ReadOptions& options = {});
 DoctorReport examineClip(const Clip& clip);
 
+/// The faults of a clip that every number computed from it hangs on: an uncertain unit or up axis,
+/// a doubtful rate, frames or bodies that were left out, a calibration pose. Every command that
+/// reads clips tells them. `clip` is as its reader gave it.
+std::vector<Fault> doubtsOf(const Clip& clip);
+
+Json toJson(const Fault& fault);
 Json toJson(const DoctorReport& report);
 /// A few lines for people.
 std::string toText(const DoctorReport& report);

@@ -27,6 +27,17 @@ Finding sidesByGeometry(const Clip& clip, const SkeletonRoles& roles);
 /// Naming habit and body plan.
 std::string skeletonKind(const Skeleton& skeleton, const SkeletonRoles& roles);
 
+/// The first frame is far from the second, or is the rest pose and no motion: a pose to calibrate
+/// by.
+std::optional<Fault> calibrationPose(const Clip& clip);
+/// People walk and run with steps that are the shorter the quicker: the stride's length (m) times
+/// its duration (s) is about 1.4 at every pace (walk ratio of Sekiya and Nagasaki 1998, 0.0058 m
+/// per step and minute). A file of another frame rate than its own is off by the quotient of the
+/// rates; what is three times off is told, where a person makes three strides at least.
+std::optional<Fault> doubtfulRate(const Clip& clip, const SkeletonRoles& roles);
+/// What readers noted that is a fault of the file or a doubt of theirs.
+void addReaderFaults(const Clip& clip, std::vector<Fault>& out);
+
 /// All joints jump between two frames.
 void checkTeleports(const Clip& clip, std::vector<Fault>& out);
 /// One joint leaves its path for one frame. Frames beside a teleport are left to that.

@@ -37,12 +37,46 @@ std::vector<double> meanSteps(const Clip& clip) {
   return out;
 }
 
+/// Every joint but the root is turned as in the rest pose.
+bool isRestPose(const Clip& clip, int t) {
+  constexpr float kSameTurn = 0.99996f;  // cosine of half a degree
+  if (!clip.transforms) return false;
+  const auto width = static_cast<size_t>(clip.jointCount());
+  const auto first = clip.transforms->rotations.begin() + static_cast<long>(width) * t;
+  return std::all_of(first + 1, first + static_cast<long>(width),
+                     [](const Quat& q) { return std::abs(q.w()) > kSameTurn; });
+}
+
+/// How far the joints move from the first frame to the second, where that tells that the first is
+/// no part of the motion.
+std::optional<double> calibrationStep(const Clip& clip, const std::vector<double>& steps) {
+  constexpr size_t kLeastSteps = 8;
+  constexpr double kTimesUsual = 3.0;
+  constexpr double kRestStepM = 0.03, kRestTimesUsual = 1.5;
+  if (steps.size() < kLeastSteps) return std::nullopt;
+  std::vector<double> others(steps.begin() + 1, steps.end());
+  std::sort(others.begin(), others.end());
+  const double large = others[others.size() * 95 / 100];
+  const bool far = steps[0] >= std::max(kJumpM, kTimesUsual * large);
+  const bool rest = isRestPose(clip, 0) && !isRestPose(clip, 1) &&
+                    steps[0] >= std::max(kRestStepM, kRestTimesUsual * large);
+  return far || rest ? std::optional(steps[0]) : std::nullopt;
+}
+
 /// Steps far above the usual one: i is the step from frame i to i + 1, from 0.
 std::set<size_t> jumps(const std::vector<double>& steps) {
   const double limit = std::max(kJumpM, kJumpTimesMedian * median(steps));
   std::set<size_t> out;
   for (size_t i = 0; i < steps.size(); ++i)
     if (steps[i] >= limit) out.insert(i);
+  return out;
+}
+
+/// Those, and the one that leads out of a calibration pose.
+std::set<size_t> allJumps(const Clip& clip) {
+  const std::vector<double> steps = meanSteps(clip);
+  std::set<size_t> out = jumps(steps);
+  if (calibrationStep(clip, steps)) out.insert(0);
   return out;
 }
 
@@ -68,19 +102,57 @@ void addListed(std::vector<Fault> found, std::vector<Fault>& out) {
   out.insert(out.end(), found.begin(), found.end());
 }
 
+/// What a note of a reader is, by its beginning and a part of it.
+struct NoteKind {
+  std::string_view begin, part;
+  const char* kind;
+  Severity severity;
+};
+constexpr NoteKind kNoteKinds[] = {
+    {"frame time ", "", "rounded_frame_time", Severity::Note},
+    {"line ", "a second joint '", "repeated_name", Severity::Warning},
+    {"unit ", "an uncertain guess", "unit_uncertain", Severity::Warning},
+    {"up axis ", "an uncertain guess", "up_uncertain", Severity::Warning},
+    {"ROOT '", "is left out", "left_out", Severity::Warning},
+    {"the header ", "", "frame_count", Severity::Warning},
+    {"line ", "the last row has", "frame_count", Severity::Warning},
+    {"root orientation ", "", "root_orientation", Severity::Note},
+};
+
 }  // namespace
+
+void addReaderFaults(const Clip& clip, std::vector<Fault>& out) {
+  for (const std::string& note : clip.source.notes)
+    for (const NoteKind& known : kNoteKinds)
+      if (note.starts_with(known.begin) && note.find(known.part) != std::string::npos)
+        out.push_back({known.kind, known.severity, note, std::nullopt});
+}
+
+std::optional<Fault> calibrationPose(const Clip& clip) {
+  const std::vector<double> steps = meanSteps(clip);
+  const std::optional<double> step = calibrationStep(clip, steps);
+  if (!step) return std::nullopt;
+  return Fault{
+      "calibration_pose", Severity::Warning,
+      fmt::format("between frames 1 and 2 the joints move {:.2f} m on average (median step "
+                  "{:.3f} m): the first frame may be a calibration pose (convert --frames "
+                  "1: leaves it out)",
+                  *step, median(steps)),
+      1};
+}
 
 void checkTeleports(const Clip& clip, std::vector<Fault>& out) {
   const std::vector<double> steps = meanSteps(clip);
   const double usual = median(steps);
   std::vector<Fault> found;
+  const bool calibrated = calibrationStep(clip, steps).has_value();
   for (const size_t i : jumps(steps)) {
+    if (i == 0 && calibrated) continue;
     const int frame = static_cast<int>(i) + 2;
     found.push_back({"teleport", Severity::Warning,
                      fmt::format("between frames {} and {} the joints move {:.2f} m on average "
-                                 "(median step {:.3f} m){}",
-                                 frame - 1, frame, steps[i], usual,
-                                 i == 0 ? "; the first frame may be a calibration pose" : ""),
+                                 "(median step {:.3f} m)",
+                                 frame - 1, frame, steps[i], usual),
                      frame});
   }
   addListed(std::move(found), out);
@@ -88,7 +160,7 @@ void checkTeleports(const Clip& clip, std::vector<Fault>& out) {
 
 void checkSpikes(const Clip& clip, std::vector<Fault>& out) {
   std::vector<Fault> found;
-  const std::set<size_t> jumped = jumps(meanSteps(clip));
+  const std::set<size_t> jumped = allJumps(clip);
   for (int j = 0; j < clip.jointCount(); ++j) {
     std::vector<double> bends;
     for (int t = 1; t + 1 < clip.frameCount(); ++t) bends.push_back(bend(clip, t, j));

@@ -2,6 +2,7 @@
 
 #include "io/known_skeletons.h"
 #include "io/normalise.h"
+#include "io/plain_text.h"
 #include "io/text.h"
 #include "motion/skeleton_fit.h"
 
@@ -28,8 +29,10 @@ void readRow(std::string_view row, const Place& place, std::vector<Vec3>& out) {
 }  // namespace
 
 int canReadDogText(std::string_view head) {
-  LineReader lines(head, {});
-  const auto line = lines.nextFilled();
+  const PlainText plain(head);
+  LineReader lines(plain.text(), {});
+  auto line = lines.nextFilled();
+  while (line && isComment(trim(*line))) line = lines.nextFilled();
   if (!line) return 0;
   std::string_view row = *line;
   int numbers = 0;
@@ -40,14 +43,17 @@ int canReadDogText(std::string_view head) {
 }
 
 Clip parseDogText(std::string_view bytes, const std::string& origin, const ReadOptions& options) {
-  LineReader lines(bytes, origin);
+  const PlainText plain(bytes);
+  LineReader lines(plain.text(), origin);
   Clip clip;
   clip.name = std::filesystem::path(origin).stem().string();
   clip.fps = kFps;
   clip.source.path = origin;
   clip.source.format = "dog-text";
   clip.source.fps = kFps;
-  while (const auto line = lines.nextFilled()) readRow(*line, lines.place(), clip.positions);
+  clip.source.notes = plain.notes();
+  while (const auto line = lines.nextFilled())
+    if (!isComment(trim(*line))) readRow(*line, lines.place(), clip.positions);
   if (clip.positions.empty()) throw InputError(lines.place(), "at least one frame", "zero frames");
   clip.skeleton = std::make_shared<const Skeleton>(dogSkeleton());
   clip.skeleton = withOffsetsFrom(clip);

@@ -1,5 +1,7 @@
 #include "io/export_record.h"
 
+#include "io/utf8_names.h"
+
 namespace marey::io {
 
 Json sourceJson(const Clip& clip) {
@@ -24,8 +26,8 @@ Json exportRecord(const Clip& clip, const WriteOptions& options, const Json& det
 Json fitJson(const FitResidual& fit) {
   constexpr double kCentimetres = 100.0;
   Json perJoint = Json::object();
-  for (size_t j = 0; j < fit.joints.size(); ++j)
-    perJoint[fit.joints[j]] = kCentimetres * fit.rmsM[j];
+  const std::vector<std::string> names = utf8Names(fit.joints);
+  for (size_t j = 0; j < names.size(); ++j) perJoint[names[j]] = kCentimetres * fit.rmsM[j];
   return {{"note",
            "the clip has positions only: rotations of a skeleton with constant bones were fitted "
            "to them by least squares"},

@@ -22,6 +22,7 @@ struct ReadOptions {
                                ///< marks the body's place on the floor (its motion is kept)
   std::filesystem::path asf;   ///< skeleton of an AMC file; found beside it when empty
   bool swapSides = false;      ///< the file names left what is right
+  bool wholeRows = false;      ///< take the whole frames of a file that says it has more or fewer
   std::string eulerOrder;  ///< "ZYX": order of the intrinsic turns of formats with Euler angles;
                            ///< the file's values keep their axes
 };

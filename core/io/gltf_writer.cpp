@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "io/bone_mesh.h"
 #include "io/export_record.h"
+#include "io/utf8_names.h"
 #include "motion/kinematics.h"
 
 namespace marey::io {
@@ -108,9 +109,10 @@ class GltfScene {
 
   void addNodes() {
     const Skeleton& s = *m_clip.skeleton;
+    const std::vector<std::string> names = utf8Names(s.names);
     for (size_t j = 0; j < m_joints; ++j) {
       tinygltf::Node node;
-      node.name = cleaned(s.names[j]).get<std::string>();
+      node.name = names[j];
       const Vec3& at = s.offsets[j];
       node.translation = {at.x(), at.y(), at.z()};
       m_model.nodes.push_back(node);

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "motion/kinematics.h"
 #include "motion/roles.h"
+#include "motion/rotation.h"
 
 namespace marey::io {
 namespace {
@@ -37,14 +38,15 @@ void applyUnit(Clip& clip, const FormatFacts& facts, const ReadOptions& options)
   if (!options.unit.empty()) {
     unit = unitByName(options.unit);
     clip.source.notes.push_back("unit " + unit.name + " was given");
-  } else if (facts.unit) {
+  } else if (facts.unit && !facts.unitFromFile) {
     unit = *facts.unit;
   } else {
-    const UnitGuess guess = guessUnit(*clip.skeleton);
+    const UnitGuess guess = facts.unit ? checkedUnit(clip, *facts.unit) : guessUnit(clip);
     unit = guess.unit;
-    clip.source.notes.push_back(fmt::format("unit {} is {}: {}", unit.name,
-                                            guess.certain ? "a guess" : "an uncertain guess",
-                                            guess.evidence));
+    const bool sure = guess.certain && (!facts.unit || unit.name == facts.unit->name);
+    if (!sure || !facts.unit)
+      clip.source.notes.push_back(fmt::format(
+          "unit {} is {}: {}", unit.name, sure ? "a guess" : "an uncertain guess", guess.evidence));
   }
   clip.source.unit = unit.name;
   clip.source.metresPerUnit = unit.metres;
@@ -59,7 +61,10 @@ void applyUp(Clip& clip, const FormatFacts& facts, const ReadOptions& options) {
   } else if (!facts.up) {
     const UpGuess guess = guessUp(clip);
     up = guess.up;
-    if (up != "y") clip.source.notes.push_back("up axis " + up + " is a guess: " + guess.evidence);
+    if (!guess.certain)
+      clip.source.notes.push_back("up axis " + up + " is an uncertain guess: " + guess.evidence);
+    else if (up != "y")
+      clip.source.notes.push_back("up axis " + up + " is a guess: " + guess.evidence);
   }
   clip.source.up = up;
   if (up == "z") turnToYUp(clip);
@@ -70,6 +75,29 @@ void applyRate(Clip& clip, const ReadOptions& options) {
   clip.source.notes.push_back(
       fmt::format("{:g} frames per second were given in place of {:g}", *options.fps, clip.fps));
   clip.fps = *options.fps;
+}
+
+/// Bones of joints that have no offset but stand somewhere by their position channels: the mean of
+/// where. Without them the rest pose is a point, and files written from it have no bones.
+void takeBonesFromPoses(Clip& clip) {
+  const auto width = static_cast<size_t>(clip.jointCount());
+  const auto& translations = clip.transforms->translations;
+  Skeleton skeleton = *clip.skeleton;
+  size_t taken = 0;
+  for (size_t j = 1; j < width; ++j) {
+    if (!skeleton.offsets[j].isZero(0.0f)) continue;
+    Vec3d sum = Vec3d::Zero();
+    for (size_t i = j; i < translations.size(); i += width) sum += translations[i].cast<double>();
+    skeleton.offsets[j] =
+        (sum * (static_cast<double>(width) / static_cast<double>(translations.size())))
+            .cast<float>();
+    if (!skeleton.offsets[j].isZero(0.0f)) ++taken;
+  }
+  if (taken == 0) return;
+  clip.skeleton = std::make_shared<const Skeleton>(std::move(skeleton));
+  clip.source.notes.push_back(
+      fmt::format("{} of {} joints have no offset: their bones are those of the poses, on the mean",
+                  taken, width));
 }
 
 /// A root with one child that stays on the floor below it: a marker of where the body is, which
@@ -118,6 +146,7 @@ Clip withoutExtraRoot(Clip clip) {
 Clip normalised(Clip clip, const FormatFacts& facts, const ReadOptions& options) {
   if (clip.transforms) clip.positions = forwardKinematics(*clip.skeleton, *clip.transforms);
   validate(clip);
+  if (clip.transforms) takeBonesFromPoses(clip);
   applyUnit(clip, facts, options);
   applyUp(clip, facts, options);
   applyRate(clip, options);

@@ -12,6 +12,8 @@ namespace marey::io {
 struct FormatFacts {
   std::optional<LengthUnit> unit;
   std::optional<std::string> up;
+  /// The unit is what somebody wrote into the file: it is checked against the size of the body.
+  bool unitFromFile = false;
 };
 
 /// Finishes a clip that is still in file units and axes: options override the format's facts,

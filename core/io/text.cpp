@@ -33,6 +33,73 @@ void LineReader::unread() {
   --m_line;
 }
 
+void WordReader::drop(size_t bytes) {
+  m_line += std::count(m_rest.begin(), m_rest.begin() + static_cast<long>(bytes), '\n');
+  m_rest.remove_prefix(bytes);
+}
+
+void WordReader::skipBlanks() {
+  size_t at = 0;
+  while (at < m_rest.size()) {
+    if (isBlank(m_rest[at]) || m_rest[at] == '\n') {
+      ++at;
+    } else if (isComment(m_rest.substr(at, 2))) {
+      ++m_comments;
+      at = std::min(m_rest.find('\n', at), m_rest.size());
+    } else {
+      break;
+    }
+  }
+  drop(at);
+}
+
+std::string_view WordReader::next() {
+  skipBlanks();
+  const auto isBrace = [](char c) { return c == '{' || c == '}'; };
+  size_t end = m_rest.empty() ? 0 : 1;
+  if (end > 0 && !isBrace(m_rest[0]))
+    while (end < m_rest.size() && !isBlank(m_rest[end]) && m_rest[end] != '\n' &&
+           !isBrace(m_rest[end]))
+      ++end;
+  const std::string_view word = m_rest.substr(0, end);
+  m_rest.remove_prefix(end);
+  return word;
+}
+
+std::string_view WordReader::peek() {
+  WordReader ahead = *this;
+  return ahead.next();
+}
+
+std::string_view WordReader::nameBeforeBrace() {
+  const auto isGap = [](char c) { return isBlank(c) || c == '\n'; };
+  const auto filled =
+      static_cast<size_t>(std::find_if_not(m_rest.begin(), m_rest.end(), isGap) - m_rest.begin());
+  drop(filled);
+  const std::string_view line = m_rest.substr(0, m_rest.find('\n'));
+  size_t end = line.starts_with('{') ? 0 : std::string_view::npos;
+  for (size_t at = line.find('{'); at != std::string_view::npos && end != 0;
+       at = line.find('{', at + 1))
+    if (isBlank(line[at - 1])) {
+      end = at;
+      break;
+    }
+  if (end == std::string_view::npos) {
+    WordReader after = *this;
+    after.drop(line.size());
+    end = after.peek() == "{" ? line.size() : line.find('{');
+    while (end + 1 < line.size() && line[end + 1] == '{') ++end;
+  }
+  end = std::min(end, line.size());
+  const std::string_view name = trim(line.substr(0, end));
+  m_rest.remove_prefix(end);
+  return name;
+}
+
+bool isComment(std::string_view text) {
+  return text.starts_with('#') || text.starts_with("//");
+}
+
 std::string_view takeWord(std::string_view& rest) {
   size_t begin = 0;
   while (begin < rest.size() && isBlank(rest[begin])) ++begin;

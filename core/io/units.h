@@ -19,24 +19,29 @@ const std::vector<LengthUnit>& lengthUnits();
 /// Throws UsageError naming the units there are.
 const LengthUnit& unitByName(const std::string& name);
 
-/// The size that the guess rests on, in the skeleton's unit, and what it is.
+/// The size that the guess rests on, in the clip's unit, and what it is.
 struct BodySize {
   double size = 0.0;
   std::string what;
-  bool quadruped = false;
+  bool person = false;  ///< leg plus spine of an upright body that no name makes an animal
 };
-BodySize bodySize(const Skeleton& skeleton);
+/// Bones have the lengths that they have in the poses.
+BodySize bodySize(const Clip& clip);
 
 struct UnitGuess {
   LengthUnit unit;
   double bodyM = 0.0;    ///< body size that follows from the guess, metres
-  bool certain = false;  ///< bodyM is that of a person (1.2 to 2.3 m) or of an animal (0.4 to 2 m)
+  bool certain = false;  ///< bodyM is measured on a person and that of one (1.2 to 2.3 m)
   std::string evidence;
 };
 
-/// From the size of the rest pose in file units: leg plus spine of a person, times 1.3 for foot
-/// and head; the largest extent where joints are not known by name.
-UnitGuess guessUnit(const Skeleton& skeletonInFileUnits);
+/// From the size of the body in file units: leg plus spine of a person, times 1.3 for foot and
+/// head; the largest extent of other skeletons (animals, hands, joints not known by name), which
+/// says little.
+UnitGuess guessUnit(const Clip& clipInFileUnits);
+/// The unit that a file states, as long as it makes a person of a person's size or the body is not
+/// known to be one. Else the only unit that does, or the stated one without certainty.
+UnitGuess checkedUnit(const Clip& clipInFileUnits, const LengthUnit& stated);
 
 struct UpGuess {
   std::string up = "y";
@@ -45,7 +50,7 @@ struct UpGuess {
 };
 
 /// From the mean direction from feet to trunk (hips and shoulders) over the clip (positions in file
-/// axes).
+/// axes). Y, uncertain, where those are not known.
 UpGuess guessUp(const Clip& clip);
 
 /// "y" or "z". Throws UsageError otherwise.

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "motion/resample.h"
 
 namespace marey {
 namespace {
@@ -193,20 +194,28 @@ std::vector<Clip> sampleClips(const MotionModel& model, const SampleRequest& req
 SampleRequest requestAlongClip(const MotionModel& model, const Clip& clip, bool startFromClip) {
   const ModelInfo& info = model.info();
   const Place place{.path = clip.source.path.empty() ? clip.name : clip.source.path};
+  const auto requireLength = [&](int frames, int skipped) {
+    if (frames < skipped + 2)
+      throwInput(
+          place,
+          fmt::format("more than {} frames at {} per second", skipped + 1, info.features.fps), "{}",
+          frames);
+  };
+  SampleRequest out;
+  if (!startFromClip) {  // the path alone, which any skeleton shows
+    validate(clip);
+    const auto path = rootPath(resampled(clip, info.features.fps), info.features);
+    requireLength(static_cast<int>(path.size()), 0);
+    out.path = trajectoryFromControl(controlFromTrajectory(path), path.front());
+    return out;
+  }
   requireSameJoints(info, clip, place.path);
   const FeatureSequence features = extractFeatures(clip, info.features);
-  const int skipped = startFromClip ? info.context : 0;
-  if (features.frameCount() < skipped + 2)
-    throwInput(place,
-               fmt::format("more than {} frames at {} per second", skipped + 1, info.features.fps),
-               "{}", features.frameCount());
+  requireLength(features.frameCount(), info.context);
   const auto trajectory = trajectoryFromControl(features.control, features.start);
-  SampleRequest out;
-  out.path.assign(trajectory.begin() + skipped, trajectory.end());
-  if (startFromClip) {
-    out.startPoses = features.pose.topRows(skipped);
-    out.startControl = features.control.topRows(skipped);
-  }
+  out.path.assign(trajectory.begin() + info.context, trajectory.end());
+  out.startPoses = features.pose.topRows(info.context);
+  out.startControl = features.control.topRows(info.context);
   return out;
 }
 

@@ -54,9 +54,9 @@ Clip sampledClip(const MotionModel& model, const FeatureSequence& sequence);
 std::vector<Clip> sampleClips(const MotionModel& model, const SampleRequest& request,
                               Progress& progress);
 
-/// The request for following a clip's own control; `startFromClip` takes its first frames as
-/// history (the path then begins after them). Throws InputError when the clip is shorter than
-/// the model's context needs or has another number of joints.
+/// The request for following a clip's own path, whatever its joints; `startFromClip` takes its
+/// first frames as history (the path then begins after them). Throws InputError when the clip is
+/// shorter than that needs or, for a start from it, has other joints than the model.
 SampleRequest requestAlongClip(const MotionModel& model, const Clip& clip, bool startFromClip);
 
 }  // namespace marey

@@ -71,6 +71,21 @@ std::vector<double> rawHeading(const Clip& clip, const SkeletonRoles& roles) {
   return unwrapped(std::move(out));
 }
 
+/// The direction of every step; that of the step before where there is none.
+std::vector<double> headingOfMovement(const std::vector<double>& x, const std::vector<double>& z) {
+  constexpr double kLeastStepM = 1e-4;
+  std::vector<double> out(x.size(), 0.0);
+  bool moved = false;
+  for (size_t t = 1; t < x.size(); ++t) {
+    const double dx = x[t] - x[t - 1], dz = z[t] - z[t - 1];
+    const bool step = std::hypot(dx, dz) > kLeastStepM;
+    out[t] = step ? std::atan2(dx, dz) : out[t - 1];
+    if (step && !moved) std::fill(out.begin(), out.begin() + static_cast<long>(t), out[t]);
+    moved = moved || step;
+  }
+  return unwrapped(std::move(out));
+}
+
 Vec3 toRootFrame(const Vec3& p, const RootFrame& root) {
   const double c = std::cos(root.heading), s = std::sin(root.heading);
   const double dx = p.x() - root.x, dz = p.z() - root.z;
@@ -86,11 +101,15 @@ Vec3 fromRootFrame(const Vec3& p, const RootFrame& root) {
 }  // namespace
 
 std::vector<RootFrame> rootTrajectory(const Clip& clip, const FeatureSpec& spec) {
-  const SkeletonRoles roles = rolesOf(*clip.skeleton);
-  if (!roles.hasFacing())
+  if (!rolesOf(*clip.skeleton).hasFacing())
     throw InputError({.path = clip.source.path.empty() ? clip.name : clip.source.path},
                      "a left and a right hip joint (they give the facing direction)",
                      "joints without such names");
+  return rootPath(clip, spec);
+}
+
+std::vector<RootFrame> rootPath(const Clip& clip, const FeatureSpec& spec) {
+  const SkeletonRoles roles = rolesOf(*clip.skeleton);
   const auto n = static_cast<size_t>(clip.frameCount());
   std::vector<double> x(n), z(n);
   for (size_t t = 0; t < n; ++t) {
@@ -100,7 +119,9 @@ std::vector<RootFrame> rootTrajectory(const Clip& clip, const FeatureSpec& spec)
   }
   x = gaussianFiltered(x, spec.rootSigmaS * clip.fps);
   z = gaussianFiltered(z, spec.rootSigmaS * clip.fps);
-  const auto heading = gaussianFiltered(rawHeading(clip, roles), spec.facingSigmaS * clip.fps);
+  const auto heading =
+      gaussianFiltered(roles.hasFacing() ? rawHeading(clip, roles) : headingOfMovement(x, z),
+                       spec.facingSigmaS * clip.fps);
   std::vector<RootFrame> out(n);
   for (size_t t = 0; t < n; ++t) out[t] = {x[t], z[t], heading[t]};
   return out;

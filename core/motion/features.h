@@ -50,6 +50,8 @@ struct FeatureSequence {
 /// the left-right hip and shoulder vectors), both Gaussian-filtered in time.
 /// Throws InputError when the skeleton has no left and right hip joint.
 std::vector<RootFrame> rootTrajectory(const Clip& clip, const FeatureSpec& spec);
+/// The same of a clip of any joints: one whose hips are not known by name faces where it moves to.
+std::vector<RootFrame> rootPath(const Clip& clip, const FeatureSpec& spec);
 
 /// Control rows [T, 3] between successive root frames, and back by integration in double.
 Matrix controlFromTrajectory(const std::vector<RootFrame>& trajectory);

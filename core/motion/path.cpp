@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "base/error.h"
@@ -14,7 +13,6 @@ namespace {
 constexpr double kDefaultSpeedMS = 1.2;
 /// Straight pieces that stand for one span of the spline when its length is measured.
 constexpr int kPiecesPerSpan = 64;
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 using Eigen::Vector2d;  // (x, z)
 
@@ -172,20 +170,6 @@ class Timing {
   std::vector<double> m_times, m_lengths, m_speeds;
 };
 
-/// Degrees that read back as exactly this angle, where there are any (as for every angle that was
-/// read from degrees): a path that is saved and opened again gives the same motion.
-double degreesOf(double radians) {
-  const double nearest = radians / kRadians;
-  double low = nearest, high = nearest;
-  for (int ulp = 0; ulp < 4; ++ulp) {
-    if (kRadians * low == radians) return low;
-    if (kRadians * high == radians) return high;
-    low = std::nextafter(low, -std::numeric_limits<double>::infinity());
-    high = std::nextafter(high, std::numeric_limits<double>::infinity());
-  }
-  return nearest;
-}
-
 /// Heading in a span: along the path, turned towards the facings of its ends where they are given.
 double headingIn(const WayPoint& from, const WayPoint& to, double u, double tangent,
                  double tangentFrom, double tangentTo) {
@@ -225,54 +209,6 @@ std::vector<RootFrame> samplePath(const std::vector<WayPoint>& points, double fp
     out.push_back(frame);
   }
   return out;
-}
-
-std::vector<WayPoint> wayPointsFromJson(const Json& value, const std::string& origin,
-                                        const std::string& prefix) {
-  JsonReader reader(value, origin, prefix);
-  const std::string facing = reader.optional<std::string>("facing", "path");
-  if (facing != "path" && facing != "fixed")
-    throw InputError(reader.place("facing"), "'path' or 'fixed'", "'" + facing + "'");
-  const Json& list = reader.raw("waypoints");
-  reader.finish();
-  if (!list.is_array()) throw InputError(reader.place("waypoints"), "an array", list.type_name());
-  std::vector<WayPoint> points;
-  for (const Json& item : list) {
-    JsonReader one(item, origin, fmt::format("{}waypoints[{}].", prefix, points.size()));
-    WayPoint p{.x = one.required<double>("x"),
-               .z = one.required<double>("z"),
-               .timeS = {},
-               .speedMS = {},
-               .facing = {}};
-    if (one.has("time")) p.timeS = one.required<double>("time");
-    if (one.has("speed")) p.speedMS = one.required<double>("speed");
-    if (one.has("facing_deg")) p.facing = kRadians * one.required<double>("facing_deg");
-    one.finish();
-    // A fixed facing is that of the way-point before; at the start it is +Z.
-    if (facing == "fixed" && !p.facing) p.facing = points.empty() ? 0.0 : *points.back().facing;
-    points.push_back(p);
-  }
-  return points;
-}
-
-Json toJson(const std::vector<WayPoint>& points) {
-  Json list = Json::array();
-  for (const WayPoint& p : points) {
-    Json one = {{"x", p.x}, {"z", p.z}};
-    if (p.timeS) one["time"] = *p.timeS;
-    if (p.speedMS) one["speed"] = *p.speedMS;
-    if (p.facing) one["facing_deg"] = degreesOf(*p.facing);
-    list.push_back(one);
-  }
-  return {{"waypoints", list}};
-}
-
-std::vector<WayPoint> readPathFile(const std::filesystem::path& file) {
-  return wayPointsFromJson(readJson(file), file.string());
-}
-
-void writePathFile(const std::filesystem::path& file, const std::vector<WayPoint>& points) {
-  writeJson(file, toJson(points));
 }
 
 }  // namespace marey

@@ -27,9 +27,13 @@ struct WayPoint {
 std::vector<RootFrame> samplePath(const std::vector<WayPoint>& points, double fps,
                                   const std::string& origin);
 
-/// A path file: {"waypoints": [{"x","z","time"|"speed","facing_deg"}...], "facing":
-/// "path"|"fixed"}.
+/// A path file: JSON {"waypoints": [{"x","z","time"|"speed","facing_deg"}...], "facing":
+/// "path"|"fixed"}, or a table (CSV with commas, semicolons or tabs) whose first row names its
+/// columns: x and z in metres, and time (seconds), speed (m/s), facing_deg where they are known.
+/// Throws FileError or InputError naming the key or line.
 std::vector<WayPoint> readPathFile(const std::filesystem::path& file);
+/// What of the way-points has no effect: a sentence each.
+std::vector<std::string> pathRemarks(const std::vector<WayPoint>& points);
 /// Throws FileError.
 void writePathFile(const std::filesystem::path& file, const std::vector<WayPoint>& points);
 /// The object of a path file, wherever it stands. Throws InputError naming `origin` and the key.

@@ -1,125 +1,91 @@
 #include "motion/roles.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <span>
 #include <string_view>
 
 #include "base/error.h"
+#include "motion/joint_names.h"
 
 namespace marey {
 namespace {
 
-/// Names of one part in lower case without prefix and punctuation, in order of preference: a
-/// name that another habit uses for a neighbouring joint comes last. "<s>" is the side as a word,
-/// "<l>" as a letter.
+/// Names of one part (JointName::part) in order of preference: one that another habit uses for a
+/// neighbouring joint comes last.
 using Habits = std::span<const std::string_view>;
-constexpr std::string_view kUpperLeg[] = {"<s>upleg",    "<l>femur", "upperleg<l>", "<s>upperleg",
-                                          "<l>upperleg", "upleg<l>", "<s>thigh",    "<l>thigh",
-                                          "thigh<l>",    "<s>hip",   "<l>hip",      "<l>thighbend"};
-constexpr std::string_view kUpperArm[] = {"<s>arm",      "<l>humerus",  "upperarm<l>",
-                                          "<s>upperarm", "<l>upperarm", "<l>shldrbend",
-                                          "<l>shldr",    "<s>shoulder", "<l>shoulder"};
-constexpr std::string_view kAnkle[] = {"<s>ankle", "<l>ankle", "<s>foot", "<l>foot", "foot<l>"};
-constexpr std::string_view kHips[] = {"hips", "hip", "pelvis", "root", "vicon", "jointroot"};
+constexpr std::string_view kUpperLeg[] = {"upleg",     "femur",    "upperleg", "thigh",
+                                          "thighbend", "legupper", "hip"};
+constexpr std::string_view kUpperArm[] = {"arm",       "humerus", "upperarm", "uparm",   "uarm",
+                                          "shldrbend", "shldr",   "armupper", "shoulder"};
+constexpr std::string_view kAnkle[] = {"ankle", "foot"};
+constexpr std::string_view kHips[] = {"hips", "hip", "pelvis"};
+constexpr std::string_view kRoots[] = {"root", "vicon", "jointroot"};
+constexpr std::string_view kForePaw[] = {"handsite", "hand", "frontfoot"};
+constexpr std::string_view kHindPaw[] = {"footsite", "foot", "hindfoot"};
+/// Beginnings of what no person has.
+constexpr std::string_view kAnimal[] = {"tail", "paw", "hoof", "wing", "beak", "udder"};
 
-/// "mixamorig:LeftUpLeg" -> "leftupleg", "UpperLeg_L" -> "upperlegl".
-std::string plainName(const std::string& name) {
-  const size_t colon = name.rfind(':');
-  std::string out;
-  for (const char c : colon == std::string::npos ? name : name.substr(colon + 1))
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
+std::string_view withoutNumber(std::string_view part) {
+  while (!part.empty() && std::isdigit(static_cast<unsigned char>(part.back())) != 0)
+    part.remove_suffix(1);
+  return part;
 }
 
-std::string replaced(std::string_view name, size_t at, std::string_view from, std::string_view to) {
-  return fmt::format("{}{}{}", name.substr(0, at), to, name.substr(at + from.size()));
-}
-
-std::string withSide(std::string_view habit, bool left) {
-  std::string out(habit);
-  if (const size_t at = out.find("<s>"); at != std::string::npos)
-    out = replaced(out, at, "<s>", left ? "left" : "right");
-  if (const size_t at = out.find("<l>"); at != std::string::npos)
-    out = replaced(out, at, "<l>", left ? "l" : "r");
-  return out;
-}
-
-/// First joint of the first habit that is there on the given side, or -1.
-int findPart(const std::vector<std::string>& plain, Habits habits, bool left) {
-  for (const std::string_view habit : habits) {
-    const auto it = std::find(plain.begin(), plain.end(), withSide(habit, left));
-    if (it != plain.end()) return static_cast<int>(it - plain.begin());
-  }
+/// First joint of the first habit that is there on the given side, or -1; numbered parts
+/// ('thigh01') where there is none without a number.
+int findPart(const std::vector<JointName>& names, Habits habits, Side side) {
+  for (const std::string_view habit : habits)
+    for (const bool numbered : {false, true})
+      for (size_t j = 0; j < names.size(); ++j) {
+        const std::string_view part = names[j].part;
+        if (names[j].side == side && habit == (numbered ? withoutNumber(part) : part))
+          return static_cast<int>(j);
+      }
   return -1;
 }
 
-/// Names that the joint on the other side may have: words first, then single letters at the start
-/// or end of the name proper.
-std::vector<std::string> otherSideNames(const std::string& name) {
-  static constexpr std::array<std::array<std::string_view, 2>, 3> words = {
-      {{"Left", "Right"}, {"left", "right"}, {"LEFT", "RIGHT"}}};
-  std::vector<std::string> out;
-  for (const auto& pair : words)
-    for (int side = 0; side < 2; ++side)
-      for (size_t at = name.find(pair[side]); at != std::string::npos;
-           at = name.find(pair[side], at + 1))
-        out.push_back(replaced(name, at, pair[side], pair[1 - side]));
-  const size_t colon = name.rfind(':');
-  const size_t start = colon == std::string::npos ? 0 : colon + 1;
-  static constexpr std::array<std::string_view, 4> letters = {"L", "R", "l", "r"};
-  for (size_t i = 0; i < letters.size(); ++i) {
-    const std::string_view letter = letters[i], other = letters[i ^ 1];
-    if (name.compare(start, 1, letter) == 0) out.push_back(replaced(name, start, letter, other));
-    if (name.size() > start && name.compare(name.size() - 1, 1, letter) == 0)
-      out.push_back(replaced(name, name.size() - 1, letter, other));
-    for (const char bar : {'_', '.', '-', ' '})  // "Leg_L_end", "c_l_foot"
-      if (const size_t at = name.find(fmt::format("{0}{1}{0}", bar, letter));
-          at != std::string::npos)
-        out.push_back(replaced(name, at + 1, letter, other));
-  }
+/// The joint that both hang on, or -1.
+int commonAncestor(const Skeleton& skeleton, int a, int b) {
+  if (a < 0 || b < 0) return -1;
+  const auto above = [&skeleton](int joint) {
+    return skeleton.parents[static_cast<size_t>(joint)];
+  };
+  while (a != b && a >= 0 && b >= 0) (a > b ? a : b) = above(std::max(a, b));
+  return std::min(a, b);
+}
+
+/// Where a limb begins: the last joint of a side on the way from `joint` to the root.
+int firstOfLimb(const Skeleton& skeleton, const std::vector<JointName>& names, int joint) {
+  int out = -1;
+  for (; joint >= 0 && names[static_cast<size_t>(joint)].side != Side::None;
+       joint = skeleton.parents[static_cast<size_t>(joint)])
+    out = joint;
   return out;
 }
 
-std::vector<int> mirrorMap(const Skeleton& skeleton) {
-  std::vector<int> out(skeleton.names.size());
-  for (int j = 0; j < skeleton.jointCount(); ++j) {
-    out[static_cast<size_t>(j)] = j;
-    for (const std::string& name : otherSideNames(skeleton.names[static_cast<size_t>(j)]))
-      if (const int other = skeleton.find(name); other >= 0) {
-        out[static_cast<size_t>(j)] = other;
-        break;
-      }
-  }
-  // A pair names each other; anything else is a coincidence of letters.
-  for (size_t j = 0; j < out.size(); ++j)
-    if (out[static_cast<size_t>(out[j])] != static_cast<int>(j)) out[j] = static_cast<int>(j);
-  return out;
+int findHips(const Skeleton& skeleton, const std::vector<JointName>& names,
+             const SkeletonRoles& roles) {
+  if (const int named = findPart(names, kHips, Side::None); named >= 0) return named;
+  if (const int both = commonAncestor(skeleton, roles.leftHip, roles.rightHip); both >= 0)
+    return both;
+  return std::max(0, findPart(names, kRoots, Side::None));
 }
 
-bool contains(const std::vector<std::string>& plain, std::string_view part) {
-  return std::any_of(plain.begin(), plain.end(), [part](const std::string& name) {
-    return name.find(part) != std::string::npos;
-  });
-}
-
-/// The four toes: end sites that are joints of the skeleton, else paws. Left first.
-std::vector<int> quadrupedFeet(const std::vector<std::string>& plain) {
-  static constexpr std::string_view fore[] = {"<s>handsite", "<s>hand", "<s>frontfoot"};
-  static constexpr std::string_view hind[] = {"<s>footsite", "<s>foot", "<s>hindfoot"};
+/// The four toes of a quadruped: end sites that are joints of the skeleton, else paws. Left first.
+std::vector<int> fourFeet(const std::vector<JointName>& names) {
   std::vector<int> out;
-  for (const Habits paw : {Habits(fore), Habits(hind)})
-    for (const bool left : {true, false})
-      if (const int joint = findPart(plain, paw, left); joint >= 0) out.push_back(joint);
+  for (const Habits paw : {Habits(kForePaw), Habits(kHindPaw)})
+    for (const Side side : {Side::Left, Side::Right})
+      if (const int joint = findPart(names, paw, side); joint >= 0) out.push_back(joint);
   return out;
 }
 
-std::vector<int> bipedFeet(const std::vector<std::string>& plain) {
-  const int left = findPart(plain, kAnkle, true), right = findPart(plain, kAnkle, false);
-  if (left < 0 || right < 0) return {};
-  return {left, right};
+bool anyBegins(const std::vector<JointName>& names, std::span<const std::string_view> beginnings) {
+  return std::any_of(names.begin(), names.end(), [&](const JointName& name) {
+    return std::any_of(beginnings.begin(), beginnings.end(),
+                       [&](std::string_view b) { return name.part.starts_with(b); });
+  });
 }
 
 std::string trimmed(std::string_view text) {
@@ -134,33 +100,52 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
+/// The joint of the longest text up to a comma or the end that is a name (names may hold commas
+/// themselves), and where that text ends; -1 and the next comma where there is none.
+std::pair<int, size_t> takeJoint(const Skeleton& skeleton, const std::string& text, size_t begin) {
+  for (size_t end = text.size(); end != std::string::npos && end >= begin;
+       end = end == 0 ? std::string::npos : text.rfind(',', end - 1)) {
+    const int joint = skeleton.find(trimmed(std::string_view(text).substr(begin, end - begin)));
+    if (joint >= 0) return {joint, end};
+  }
+  return {-1, std::min(text.find(',', begin), text.size())};
+}
+
 }  // namespace
 
 SkeletonRoles rolesOf(const Skeleton& skeleton) {
-  std::vector<std::string> plain;
-  for (const std::string& name : skeleton.names) plain.push_back(plainName(name));
+  const std::vector<JointName> names = readJointNames(skeleton.names);
   SkeletonRoles out;
-  out.hips = std::max(0, findPart(plain, kHips, true));
-  out.leftHip = findPart(plain, kUpperLeg, true);
-  out.rightHip = findPart(plain, kUpperLeg, false);
-  out.leftShoulder = findPart(plain, kUpperArm, true);
-  out.rightShoulder = findPart(plain, kUpperArm, false);
-  out.mirror = mirrorMap(skeleton);
-  const std::vector<int> toes = quadrupedFeet(plain);
-  out.quadruped = contains(plain, "tail") && toes.size() == 4;
-  out.feet = out.quadruped ? toes : bipedFeet(plain);
+  for (const JointName& name : names) out.mirror.push_back(name.mirror);
+  const int left = findPart(names, kAnkle, Side::Left),
+            right = findPart(names, kAnkle, Side::Right);
+  const bool ankles = left >= 0 && right >= 0;
+  out.leftHip = findPart(names, kUpperLeg, Side::Left);
+  out.rightHip = findPart(names, kUpperLeg, Side::Right);
+  if (ankles && !out.hasFacing()) {
+    out.leftHip = firstOfLimb(skeleton, names, left);
+    out.rightHip = firstOfLimb(skeleton, names, right);
+  }
+  out.leftShoulder = findPart(names, kUpperArm, Side::Left);
+  out.rightShoulder = findPart(names, kUpperArm, Side::Right);
+  out.hips = findHips(skeleton, names, out);
+  out.animal = anyBegins(names, kAnimal);
+  const std::vector<int> paws = fourFeet(names);
+  out.quadruped = anyBegins(names, std::span(kAnimal).first(1)) && paws.size() == 4;
+  if (out.quadruped)
+    out.feet = paws;
+  else if (ankles)
+    out.feet = {left, right};
   return out;
 }
 
 std::vector<int> jointsByName(const Skeleton& skeleton, const std::string& commaSeparated) {
   std::vector<int> out;
-  size_t begin = 0;
-  while (begin <= commaSeparated.size()) {
-    const size_t end = std::min(commaSeparated.find(',', begin), commaSeparated.size());
-    const std::string name = trimmed(std::string_view(commaSeparated).substr(begin, end - begin));
-    const int joint = skeleton.find(name);
+  for (size_t begin = 0; begin <= commaSeparated.size();) {
+    const auto [joint, end] = takeJoint(skeleton, commaSeparated, begin);
     if (joint < 0)
-      throwInput({.path = "joint names"}, "one of " + joined(skeleton.names), "'{}'", name);
+      throwInput({.path = "joint names"}, "one of " + joined(skeleton.names), "'{}'",
+                 trimmed(std::string_view(commaSeparated).substr(begin, end - begin)));
     out.push_back(joint);
     begin = end + 1;
   }

@@ -1,5 +1,5 @@
-// What the joints of a skeleton are, found by name over the naming habits of the field
-// (CMU, Mixamo, Bandai-Namco, the AI4Animation dog, Marey's walker).
+// What the joints of a skeleton are, found by name over the naming habits of the field (see
+// joint_names.h).
 #pragma once
 
 #include <string>
@@ -17,6 +17,7 @@ struct SkeletonRoles {
                                               ///< biped, the four toes of a quadruped; left first
   std::vector<int> mirror;                    ///< joint on the other side; itself on the midline
   bool quadruped = false;
+  bool animal = false;  ///< names of a tail, paws, hooves or wings: a person's size says nothing
 
   bool hasFacing() const { return leftHip >= 0 && rightHip >= 0; }
 };

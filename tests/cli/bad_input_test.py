@@ -41,7 +41,8 @@ class MotionFiles(SharedModelCase):
         self.assertEqual(sum(a != b for a, b in zip(lines, self.lines)), 1)
         path = self.damaged("renamed.bvh", lines)
         for words in (["score", self.model, path],
-                      ["sample", self.model, "--path", f"clip:{path}", "--out", self.dir / "out"]):
+                      ["sample", self.model, "--path", f"clip:{path}", "--start", "clip", "--out",
+                       self.dir / "out"]):
             with self.subTest(command=words[0]):
                 self.assert_refused([*words, "--quiet"], "renamed.bvh", "LeftFoot", "LeftPaw")
 

@@ -10,9 +10,11 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
-    const marey::Clip clip = marey::io::parseBvh(bytes, "fuzz.bvh");
-    marey::validate(clip);
-    marey::io::examineClip(clip);
+    for (const marey::Clip& clip : marey::io::parseBvhClips(bytes, "fuzz.bvh")) {
+      marey::validate(clip);
+      marey::io::examineClip(clip);
+      marey::io::doubtsOf(clip);
+    }
   } catch (const marey::InputError&) {
   }
   return 0;

@@ -6,6 +6,7 @@
 
 #include "npz_fuzz_names.h"
 #include "pickle_seeds.h"
+#include "text_seeds.h"
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -92,6 +93,7 @@ void writeBvhSeeds(const Clip& clip, const fs::path& folder) {
   io::writeClip(positions, folder / "positions.bvh", {.eulerOrder = "YXZ"});
   for (const char* name : {"rotations.bvh", "positions.bvh"})
     fs::remove(folder / (std::string(name) + ".recipe.json"));
+  writeBvhKinds(folder);
 }
 
 void writeAcclaimSeed(const fs::path& folder) {
@@ -104,13 +106,13 @@ void writeAcclaimSeed(const fs::path& folder) {
   const std::string amc =
       ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 1 2 3 0 0 0\nleg 1 2 3\n2\nroot 1 2 3 4 5 6\nleg 0 0 "
       "0\n";
-  writeFileAtomically(folder / "leg", asf + '\0' + amc);
+  writeAcclaimKinds(folder, asf, amc);
 }
 
 void writeDogSeed(const fs::path& folder) {
   std::string row = "0.1";
   for (int i = 1; i < 81; ++i) row += fmt::format(",\t{:.2f}", 0.01 * i);
-  writeFileAtomically(folder / "dog", row + "\n" + row + "\n");
+  writeTextKinds(folder, row + "\n" + row + "\n");
 }
 
 void writeExperimentSeed(const fs::path& folder) {

@@ -123,6 +123,49 @@ TEST(Path, AFixedFacingIsKeptFromWayPointToWayPoint) {
   EXPECT_NEAR(*points[3].facing, kPi / 4.0, 1e-12);
 }
 
+TEST(Path, ATableIsAPathWhoseColumnsAreNamed) {
+  const char* tables[] = {
+      "time,x,z,facing_deg\n0,0,1,90\n2,3,4,0\n",
+      "# walked\r\nfacing_deg; Z_m; x_m; t\r\n90;1;0;0\r\n0;4;3;2\r\n",
+      "\xEF\xBB\xBF\"time_s\"\tx\ty\tz\tfacing_deg\r0\t0\t9\t1\t90\r2\t3\t9\t4\t0"};
+  for (const char* table : tables) {
+    const auto points = readPathFile(temporaryFile("path.csv", table));
+    ASSERT_EQ(points.size(), 2u) << table;
+    EXPECT_EQ(points[0].z, 1.0);
+    EXPECT_NEAR(*points[0].facing, kPi / 2.0, 1e-12);
+    EXPECT_EQ(points[1], (WayPoint{.x = 3, .z = 4, .timeS = 2.0, .speedMS = {}, .facing = 0.0}));
+  }
+}
+
+TEST(Path, WhatIsNoPathSaysWhatOneIs) {
+  const std::pair<const char*, const char*> wrong[] = {{"hello", "waypoints"},
+                                                       {"[[0, 0], [1, 1]]", "waypoints"},
+                                                       {"x,y\n0,0\n", "time,x,z"},
+                                                       {"", "waypoints"},
+                                                       {"HIERARCHY\nROOT a\n", "clip:FILE"},
+                                                       {"x,z\n0,0\n1,one\n", ".csv:3"},
+                                                       {"x,z\n0,0\n1\n", "2 columns"}};
+  for (const auto& [text, expected] : wrong) try {
+      readPathFile(temporaryFile("wrong.csv", text));
+      FAIL() << text;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(expected), std::string::npos) << e.what();
+    }
+}
+
+TEST(Path, ASpeedThatNoStretchFollowsIsRemarkedOn) {
+  const auto at = [](double z, std::optional<double> time, std::optional<double> speed) {
+    return WayPoint{.x = 0, .z = z, .timeS = time, .speedMS = speed, .facing = {}};
+  };
+  EXPECT_TRUE(pathRemarks({at(0, {}, 1.0), at(1, {}, {}), at(2, 9.0, {})}).empty());
+  const auto last = pathRemarks({at(0, {}, {}), at(7, {}, 1.4)});
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_NE(last[0].find("way-point 2 (1.4 m/s)"), std::string::npos) << last[0];
+  // Every stretch that follows has a time of its own.
+  EXPECT_EQ(pathRemarks({at(0, 0.0, 1.0), at(1, 2.0, {}), at(2, 4.0, {})}).size(), 1u);
+  EXPECT_TRUE(pathRemarks({at(0, 0.0, 1.0), at(1, 2.0, {}), at(2, {}, {})}).empty());
+}
+
 TEST(Path, AMisspeltKeyOfAPathFileIsRefused) {
   const auto file = temporaryFile("bad.json", R"({"waypoints": [{"x": 0, "z": 0, "sped": 1}]})");
   try {

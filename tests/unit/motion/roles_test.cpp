@@ -120,6 +120,74 @@ TEST(Roles, MirrorKnowsLowerCaseAndSuffixHabits) {
   EXPECT_EQ(mirror, (std::vector<int>{0, 2, 1, 3, 5, 4, 7, 6, 8}));
 }
 
+TEST(Roles, HabitsOfOtherProgramsAreKnown) {
+  // Unreal, OptiTrack Motive, DAZ, Character Creator, Valve, VRM, MakeHuman, Kinect, SMPL-X.
+  expectRoles({"root",       "pelvis",     "spine_01",         "clavicle_l",
+               "upperarm_l", "lowerarm_l", "clavicle_r",       "upperarm_r",
+               "lowerarm_r", "thigh_l",    "thigh_twist_01_l", "calf_l",
+               "foot_l",     "ball_l",     "thigh_r",          "thigh_twist_01_r",
+               "calf_r",     "foot_r",     "ball_r",           "ik_foot_l",
+               "ik_foot_r"},
+              {"pelvis", "thigh_l", "thigh_r", "upperarm_l", "upperarm_r", {"foot_l", "foot_r"}});
+  expectRoles({"Hip", "Ab", "Chest", "LShoulder", "LUArm", "LFArm", "LHand", "RShoulder", "RUArm",
+               "RFArm", "RHand", "LThigh", "LShin", "LFoot", "RThigh", "RShin", "RFoot"},
+              {"Hip", "LThigh", "RThigh", "LUArm", "RUArm", {"LFoot", "RFoot"}});
+  expectRoles(
+      {"hip", "pelvis", "lThighBend", "lThighTwist", "lShin", "lFoot", "rThighBend", "rThighTwist",
+       "rShin", "rFoot", "abdomenLower", "lCollar", "lShldrBend", "rCollar", "rShldrBend"},
+      {"hip", "lThighBend", "rThighBend", "lShldrBend", "rShldrBend", {"lFoot", "rFoot"}});
+  expectRoles(
+      {"CC_Base_Hip", "CC_Base_Pelvis", "CC_Base_L_Thigh", "CC_Base_L_Calf", "CC_Base_L_Foot",
+       "CC_Base_R_Thigh", "CC_Base_R_Calf", "CC_Base_R_Foot", "CC_Base_L_Clavicle",
+       "CC_Base_L_Upperarm", "CC_Base_R_Clavicle", "CC_Base_R_Upperarm"},
+      {"CC_Base_Hip",
+       "CC_Base_L_Thigh",
+       "CC_Base_R_Thigh",
+       "CC_Base_L_Upperarm",
+       "CC_Base_R_Upperarm",
+       {"CC_Base_L_Foot", "CC_Base_R_Foot"}});
+  expectRoles(
+      {"ValveBiped.Bip01_Pelvis", "ValveBiped.Bip01_L_Thigh", "ValveBiped.Bip01_L_Calf",
+       "ValveBiped.Bip01_L_Foot", "ValveBiped.Bip01_R_Thigh", "ValveBiped.Bip01_R_Calf",
+       "ValveBiped.Bip01_R_Foot", "ValveBiped.Bip01_L_UpperArm", "ValveBiped.Bip01_R_UpperArm"},
+      {"ValveBiped.Bip01_Pelvis",
+       "ValveBiped.Bip01_L_Thigh",
+       "ValveBiped.Bip01_R_Thigh",
+       "ValveBiped.Bip01_L_UpperArm",
+       "ValveBiped.Bip01_R_UpperArm",
+       {"ValveBiped.Bip01_L_Foot", "ValveBiped.Bip01_R_Foot"}});
+  expectRoles({"root", "upperleg01.L", "upperleg02.L", "lowerleg01.L", "foot.L", "upperleg01.R",
+               "upperleg02.R", "lowerleg01.R", "foot.R", "upperarm01.L", "upperarm01.R"},
+              {"root",
+               "upperleg01.L",
+               "upperleg01.R",
+               "upperarm01.L",
+               "upperarm01.R",
+               {"foot.L", "foot.R"}});
+  expectRoles({"SpineBase", "HipLeft", "KneeLeft", "AnkleLeft", "FootLeft", "HipRight", "KneeRight",
+               "AnkleRight", "FootRight", "ShoulderLeft", "ShoulderRight"},
+              {"SpineBase",
+               "HipLeft",
+               "HipRight",
+               "ShoulderLeft",
+               "ShoulderRight",
+               {"AnkleLeft", "AnkleRight"}});
+  expectRoles({"pelvis", "left_hip", "left_knee", "left_ankle", "left_foot", "right_hip",
+               "right_knee", "right_ankle", "right_foot", "left_collar", "left_shoulder",
+               "right_collar", "right_shoulder"},
+              {"pelvis",
+               "left_hip",
+               "right_hip",
+               "left_shoulder",
+               "right_shoulder",
+               {"left_ankle", "right_ankle"}});
+}
+
+TEST(Roles, ALetterIsASideOnlyWhereTheOtherSideIsThere) {
+  const Skeleton s = named({"root", "lowerback", "lowerneck", "ribs", "lwrist", "rwrist"});
+  EXPECT_EQ(rolesOf(s).mirror, (std::vector<int>{0, 1, 2, 3, 5, 4}));
+}
+
 TEST(Roles, UnknownNamesGiveNoRolesAndNoFacing) {
   const SkeletonRoles roles = rolesOf(named({"a", "b", "c"}));
   EXPECT_EQ(roles.hips, 0);

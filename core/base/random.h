@@ -19,6 +19,7 @@ enum class RandomStage : uint32_t {
   Bootstrap = 5,
   StudentT = 6,
   Test = 7,
+  Observation = 8,
 };
 
 /// The raw block function: counter (4 words), key (2 words) -> 4 random words.

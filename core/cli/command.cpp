@@ -70,6 +70,10 @@ class ProgressLine {
 
 }  // namespace
 
+Json finiteOrNull(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
 void Context::print(const Json& result, const std::string& text) const {
   if (json)
     std::cout << jsonText(result) << '\n';

@@ -47,6 +47,9 @@ struct Context {
   Progress progress(const std::string& what) const;
 };
 
+/// JSON knows no NaN.
+Json finiteOrNull(double value);
+
 /// Adds subcommand `name` with the shared options; `run` is called once parsing succeeded.
 /// `example` is shown at the end of --help.
 CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name,

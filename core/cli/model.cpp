@@ -8,6 +8,7 @@
 #include "base/npy.h"
 #include "cli/command.h"
 #include "model/conformance.h"
+#include "model/likelihood.h"
 #include "model/model_card.h"
 #include "moglow/family.h"
 #include "motion/roles.h"
@@ -39,6 +40,10 @@ Json infoJson(const ModelInfo& info) {
   out["fps"] = info.features.fps;
   out["hash"] = info.hash;
   out["provenance"] = info.provenance;
+  out["observation"] = info.observation.none() ? Json() : toJson(info.observation);
+  out["floor_directions"] = finiteOrNull(floorDirectionsOf(info));
+  out["likelihood_unit"] = kLikelihoodUnit;
+  out["linear_gaussian"] = info.yardstick != nullptr;
   return out;
 }
 
@@ -67,6 +72,7 @@ void runInfo(const Options& o, const Context& context) {
     text += info.standardiser.empty()
                 ? "no standardiser: poses and likelihoods are in standardised units\n"
                 : "with standardiser\n";
+    text += floorText(info) + "\n";
     text += "provenance: " + info.provenance.dump(2) + "\n";
     const ModelAdvice advice = modelAdvice(o.model);
     text += adviceText(advice);

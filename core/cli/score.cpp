@@ -1,7 +1,9 @@
 // marey score: log-likelihood of every frame of clips under a model.
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <span>
 
 #include "families.h"
@@ -9,7 +11,7 @@
 #include "cli/command.h"
 #include "cli/readers.h"
 #include "experiment/packed_motion.h"
-#include "model/scorer.h"
+#include "model/likelihood.h"
 
 namespace marey::cli {
 namespace {
@@ -24,32 +26,111 @@ struct Options {
 /// Clips read before they are scored together.
 constexpr size_t kTogether = 64;
 
-/// The rows of the result.
-struct Scores {
-  explicit Scores(bool wantJson) : json(wantJson) {}
-  bool json;  ///< else only the table is made: frame by frame is much
-  Json clips = Json::array();
-  std::string table = fmt::format("{:<44} {:>7} {:>12} {:>10} {:>8}\n", "clip", "frames",
-                                  "nats/frame", "bits/dim", "|z|");
-  double sum = 0.0, frames = 0.0;
+std::string unitOf(const ModelInfo& info, bool standardised) {
+  return standardised || info.standardiser.empty() ? "nats per frame, standardised poses"
+                                                   : kLikelihoodUnit;
+}
 
-  void add(const ClipScore& score) {
-    const auto count = static_cast<double>(score.latentNorm.size());
-    double norm = 0.0;
-    for (const double v : score.latentNorm) norm += v / count;
-    if (json)
-      clips.push_back({{"name", score.name},
-                       {"first_frame", score.firstFrame},
-                       {"loglik_nats", score.loglikNats},
-                       {"mean_nats_per_frame", score.meanNatsPerFrame()},
-                       {"bits_per_dimension", score.bitsPerDimension},
-                       {"latent_norm", score.latentNorm}});
-    table += fmt::format("{:<44} {:>7} {:>12.2f} {:>10.3f} {:>8.2f}\n", score.name,
-                         score.loglikNats.size(), score.meanNatsPerFrame(), score.bitsPerDimension,
-                         norm);
-    sum += score.meanNatsPerFrame() * count;
-    frames += count;
+/// The scored clips.
+class Scores {
+ public:
+  Scores(const ModelInfo& info, bool standardised)
+      : m_info(info), m_unit(unitOf(info, standardised)) {}
+
+  void add(ClipScore score) { m_scores.push_back(std::move(score)); }
+
+  Json json() const {
+    Json clips = Json::array();
+    for (const ClipScore& score : m_scores)
+      if (!score.tooShort()) clips.push_back(clipJson(score));
+    const LikelihoodSummary s = summary();
+    const double mean = s.nats;
+    Json out = {{"clips", std::move(clips)},
+                {"unit", m_unit},
+                {"frames", s.frames},
+                {"first_frame", s.firstFrame},
+                {"mean_nats_per_frame", finiteOrNull(mean)},
+                {"linear_gaussian_nats_per_frame", finiteOrNull(s.linearGaussian)},
+                {"observation_floor_mm",
+                 m_info.observation.none() ? Json() : Json(m_info.observation.floorMm())},
+                {"observation_draws", m_info.observation.draws},
+                {"pose_dim", m_info.poseDim},
+                {"floor_directions", finiteOrNull(s.floorDirections)},
+                {"effective_dimensions", finiteOrNull(s.effectiveDimensions)},
+                {"nats_per_effective_dimension", finiteOrNull(mean / s.effectiveDimensions)},
+                {"floor", floorText(m_info)}};
+    if (m_unit == kLikelihoodUnit) out["mean_nats_per_frame_cm"] = finiteOrNull(mean);
+    out["too_short"] = Json::array();
+    for (const ShortClip& clip : s.tooShort)
+      out["too_short"].push_back(
+          {{"name", clip.name}, {"frames", clip.frames}, {"needed", clip.needed}});
+    return out;
   }
+
+  std::string table() const {
+    std::string out = fmt::format("{}\n{:<44} {:>7} {:>12} {:>10} {:>8}\n", m_unit, "clip",
+                                  "frames", "nats/frame", "bits/dim", "|z|");
+    for (const ClipScore& score : m_scores)
+      if (!score.tooShort())
+        out += fmt::format("{:<44} {:>7} {:>12.2f} {:>10.3f} {:>8.2f}\n", score.name,
+                           score.loglikNats.size(), score.meanNatsPerFrame(),
+                           score.bitsPerDimension, meanOf(score.latentNorm));
+    const LikelihoodSummary s = summary();
+    const double mean = s.nats;
+    out += fmt::format("all: {:.2f} {}", mean, m_unit);
+    if (std::isfinite(s.effectiveDimensions))
+      out += fmt::format("; {:.2f} per effective dimension ({:.0f} of {}, the others on the floor)",
+                         mean / s.effectiveDimensions, s.effectiveDimensions, m_info.poseDim);
+    if (std::isfinite(s.linearGaussian))
+      out += fmt::format("\nlinear-Gaussian autoregression, same training data and frames: {:.2f}",
+                         s.linearGaussian);
+    out += "\n" + floorText(m_info);
+    if (!s.tooShort.empty()) out += "\n" + tooShortText(s);
+    return out;
+  }
+
+  /// Throws InputError where not one clip could be scored.
+  void requireSome() const {
+    const LikelihoodSummary s = summary();
+    if (s.clips > 0 || s.tooShort.empty()) return;
+    throwInput({.path = s.tooShort.front().name},
+               fmt::format("more than {} frames at {} per second (the model's context)",
+                           m_info.context, m_info.features.fps),
+               "{}{}", s.tooShort.front().frames,
+               s.tooShort.size() > 1 ? ", and no longer clip among the others" : "");
+  }
+
+ private:
+  LikelihoodSummary summary() const { return summarise(m_info, m_scores, m_info.context); }
+  static double meanOf(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  }
+
+  /// The least likely frame, and the joint that stands out in it.
+  Json worstJson(const ClipScore& score) const {
+    const auto worst = std::min_element(score.loglikNats.begin(), score.loglikNats.end());
+    const auto index = static_cast<size_t>(worst - score.loglikNats.begin());
+    Json out = {{"frame", score.firstFrame + static_cast<int>(index)}, {"nats", *worst}};
+    if (!score.oddestJoint.empty())
+      out["joint"] = m_info.skeleton->names[static_cast<size_t>(score.oddestJoint[index])];
+    return out;
+  }
+
+  Json clipJson(const ClipScore& score) const {
+    Json out = {{"name", score.name},
+                {"first_frame", score.firstFrame},
+                {"loglik_nats", score.loglikNats},
+                {"mean_nats_per_frame", score.meanNatsPerFrame()},
+                {"bits_per_dimension", score.bitsPerDimension},
+                {"latent_norm", score.latentNorm},
+                {"worst", worstJson(score)}};
+    if (!score.linearGaussianNats.empty()) out["linear_gaussian_nats"] = score.linearGaussianNats;
+    return out;
+  }
+
+  const ModelInfo& m_info;
+  std::string m_unit;
+  std::vector<ClipScore> m_scores;
 };
 
 /// The scores of files [first, last), packed file by file. Clips are read as they are scored.
@@ -99,7 +180,7 @@ Scores scoreFiles(const Options& o, const MotionModel& model, const Context& con
         return scoreShare(o, model, std::span(files).subspan(first, last - first), share);
       },
       progress);
-  Scores out(context.json);
+  Scores out(model.info(), o.standardised);
   size_t clips = 0;
   for (const std::string& file : packed) {
     Unpacker bytes(file);
@@ -113,34 +194,14 @@ Scores scoreFiles(const Options& o, const MotionModel& model, const Context& con
 void run(const Options& o, const Context& context) {
   const auto model =
       loadModel(o.model, modelFamilies(), {.weights = weightPrecisionNamed(o.weights)});
-  // A density per metre becomes one per centimetre, the unit of the tables.
-  const double toCentimetres = model->info().poseDim * std::log(100.0);
   io::InputReport report;
-  Scores scores = scoreFiles(o, *model, context, report);
+  const Scores scores = scoreFiles(o, *model, context, report);
   if (!context.ranks->first()) return;
-  const double mean = scores.sum / scores.frames;
-  std::string& table = scores.table;
-  Json result = {{"clips", std::move(scores.clips)},
-                 {"frames", scores.frames},
-                 {"mean_nats_per_frame", mean},
-                 {"density", o.standardised ? "standardised poses" : "poses in metres"}};
-  table += fmt::format("all: {:.2f} nats per frame ({})", mean,
-                       o.standardised ? "standardised poses" : "poses in metres");
-  if (!o.standardised && !model->info().standardiser.empty()) {
-    result["mean_nats_per_frame_cm"] = mean - toCentimetres;
-    table += fmt::format(", {:.2f} with poses in centimetres", mean - toCentimetres);
-  }
-  const Json facts = model->info().provenance.value("facts", Json::object());
-  if (facts.contains("linear_gaussian_nats_per_frame")) {
-    const double floor = facts["linear_gaussian_nats_per_frame"].get<double>();
-    result["linear_gaussian_nats_per_frame"] =
-        floor + (o.standardised ? 0.0 : model->info().standardiser.logDetPerFrame());
-    table += fmt::format("\nlinear-Gaussian model of the training data: {:.2f}",
-                         result["linear_gaussian_nats_per_frame"].get<double>());
-  }
+  scores.requireSome();
+  Json result = context.json ? scores.json() : Json::object();
   report.addTo(result);
   tell(context, report);
-  context.print(result, table);
+  context.print(result, context.json ? std::string() : scores.table());
 }
 
 }  // namespace

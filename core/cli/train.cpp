@@ -5,6 +5,7 @@
 #include "families.h"
 
 #include "cli/command.h"
+#include "model/likelihood.h"
 #include "model/trainer.h"
 
 namespace marey::cli {
@@ -16,10 +17,6 @@ struct Options {
   int64_t steps = 0;
   double minutes = 0.0;
 };
-
-Json finiteOrNull(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 void run(Options& o, const Context& context) {
   o.request.config = readJson(o.config);
@@ -44,6 +41,7 @@ void run(Options& o, const Context& context) {
                      {"train_bits_per_frame", finiteOrNull(result.trainBitsPerFrame)},
                      {"valid_bits_per_frame", finiteOrNull(result.validBitsPerFrame)},
                      {"test_nats_per_frame", finiteOrNull(result.testNatsPerFrame)},
+                     {"test_unit", kLikelihoodUnit},
                      {"best", result.best.string()},
                      {"last", result.last.string()}};
   std::string text = fmt::format("{} steps", result.steps);
@@ -52,8 +50,7 @@ void run(Options& o, const Context& context) {
   if (std::isfinite(result.validBitsPerFrame))
     text += fmt::format(", {:.1f} at best in validation", result.validBitsPerFrame);
   if (std::isfinite(result.testNatsPerFrame))
-    text += fmt::format("; held-out clips {:.1f} nats per frame (poses in metres)",
-                        result.testNatsPerFrame);
+    text += fmt::format("; held-out clips {:.1f} {}", result.testNatsPerFrame, kLikelihoodUnit);
   context.print(json, text + "\n" + result.best.string());
 }
 

@@ -7,19 +7,25 @@ namespace marey {
 
 void pack(const ClipScore& score, Packer& packer) {
   packer.add(score.name)
+      .add(score.frames)
       .add(score.firstFrame)
       .add(score.bitsPerDimension)
       .add(score.loglikNats)
-      .add(score.latentNorm);
+      .add(score.latentNorm)
+      .add(score.linearGaussianNats)
+      .add(score.oddestJoint);
 }
 
 ClipScore unpackScore(Unpacker& bytes) {
   ClipScore out;
   out.name = bytes.text();
+  out.frames = bytes.number<int>();
   out.firstFrame = bytes.number<int>();
   out.bitsPerDimension = bytes.number<double>();
   out.loglikNats = bytes.list<double>();
   out.latentNorm = bytes.list<double>();
+  out.linearGaussianNats = bytes.list<double>();
+  out.oddestJoint = bytes.list<int>();
   return out;
 }
 
@@ -49,8 +55,7 @@ std::vector<std::string> packedSamples(const MotionModel& model,
     pace.frames += static_cast<double>(request.samples) * static_cast<double>(request.path.size());
   std::vector<FeatureSequence> scored;
   for (const auto& ofRequest : sampled)
-    for (const FeatureSequence& sequence : ofRequest)
-      if (sequence.frameCount() > model.info().context) scored.push_back(sequence);
+    scored.insert(scored.end(), ofRequest.begin(), ofRequest.end());
   Progress scoring = progress.part(1.0, 1.0);
   const auto scores = scoreSequences(model, scored, false, scoring);
   auto next = scores.begin();
@@ -58,10 +63,8 @@ std::vector<std::string> packedSamples(const MotionModel& model,
   for (const auto& ofRequest : sampled) {
     Packer packer;
     for (const FeatureSequence& sequence : ofRequest) {
-      const bool hasScore = sequence.frameCount() > model.info().context;
       pack(sequence.pose, packer);
-      packer.add(hasScore);
-      if (hasScore) pack(*next++, packer);
+      pack(*next++, packer);
     }
     out.push_back(packer.take());
   }
@@ -71,8 +74,8 @@ std::vector<std::string> packedSamples(const MotionModel& model,
 std::vector<ScoredSequence> unpackSamples(std::string_view bytes) {
   std::vector<ScoredSequence> out;
   for (Unpacker rest(bytes); !rest.done();) {
-    out.push_back({unpackPoses(rest), std::nullopt});
-    if (rest.number<bool>()) out.back().score = unpackScore(rest);
+    Matrix poses = unpackPoses(rest);
+    out.push_back({std::move(poses), unpackScore(rest)});
   }
   return out;
 }

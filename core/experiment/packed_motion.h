@@ -19,10 +19,10 @@ ClipScore unpackScore(Unpacker& bytes);
 void pack(const Matrix& poses, Packer& packer);
 Matrix unpackPoses(Unpacker& bytes);
 
-/// Sampled motions with their scores; one that is all context has none.
+/// Sampled motions with their scores.
 struct ScoredSequence {
   Matrix poses;
-  std::optional<ClipScore> score;
+  ClipScore score;
 };
 /// Frames sampled, and the time that took without scoring.
 struct SamplingPace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 
 #include "base/error.h"
@@ -89,7 +88,7 @@ void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vec
     int sample = 0;
     for (ScoredSequence& scored : unpackSamples(results[i])) {
       const auto sequence = sequenceOf(requests[i], sample++, std::move(scored.poses));
-      if (scored.score) out.heldOutScores.push_back(std::move(*scored.score));
+      out.heldOutScores.push_back(std::move(scored.score));
       out.heldOut.push_back(sampledClip(model, sequence));
       out.heldOut.back().name = natural[i].name + "/" + sequence.name;
       out.heldOutPaths.push_back(requests[i].path);
@@ -136,7 +135,7 @@ void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& ou
     PathSamples& samples = out.paths[e.paths[i / ofPath].name];
     samples.wanted = request.path;
     for (ScoredSequence& scored : unpackSamples(results[i])) {
-      samples.scores.push_back(scored.score.value_or(ClipScore{}));
+      samples.scores.push_back(std::move(scored.score));
       samples.clips.push_back(std::make_shared<const Clip>(sampledClip(
           model, sequenceOf(request, static_cast<int>(i % ofPath), std::move(scored.poses)))));
     }
@@ -145,16 +144,12 @@ void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& ou
 
 void scoreNatural(const MotionModel& model, const std::vector<Clip>& natural, SystemResult& out,
                   Progress& progress, Ranks& ranks) {
-  std::vector<const Clip*> clips;
-  for (const Clip& clip : natural)
-    // A clip that is all context has no frame to score.
-    if (clip.frameCount() > model.info().context) clips.push_back(&clip);
-  const auto dealt = dealtByLength(clips.size(), ranks.size(), [&](size_t i) {
-    return static_cast<size_t>(clips[i]->frameCount());
+  const auto dealt = dealtByLength(natural.size(), ranks.size(), [&](size_t i) {
+    return static_cast<size_t>(natural[i].frameCount());
   });
   const auto share = [&](size_t begin, size_t end, Progress& own) {
     std::vector<Clip> mine;
-    for (size_t i = begin; i < end; ++i) mine.push_back(*clips[dealt[i]]);
+    for (size_t i = begin; i < end; ++i) mine.push_back(natural[dealt[i]]);
     std::vector<std::string> packed;
     for (const ClipScore& score : scoreClips(model, mine, false, own)) {
       Packer packer;
@@ -163,16 +158,10 @@ void scoreNatural(const MotionModel& model, const std::vector<Clip>& natural, Sy
     }
     return packed;
   };
-  for (const auto& packed : byNumber(dealt, ranks.gather(clips.size(), share, progress))) {
+  for (const auto& packed : byNumber(dealt, ranks.gather(natural.size(), share, progress))) {
     Unpacker bytes(packed);
     out.naturalScores.push_back(unpackScore(bytes));
   }
-  double sum = 0.0, frames = 0.0;
-  for (const ClipScore& score : out.naturalScores) {
-    for (const double nats : score.loglikNats) sum += nats;
-    frames += static_cast<double>(score.loglikNats.size());
-  }
-  out.naturalNatsPerFrame = frames > 0 ? sum / frames : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Why a system cannot be compared with the natural motion; empty: it can.
@@ -186,14 +175,23 @@ std::string whyNot(const MotionModel& model, const Experiment& experiment, const
   return {};
 }
 
-double floorOf(const ModelInfo& info) {
-  const Json facts = info.provenance.value("facts", Json::object());
-  if (!facts.contains("linear_gaussian_nats_per_frame"))
-    return std::numeric_limits<double>::quiet_NaN();
-  return facts["linear_gaussian_nats_per_frame"].get<double>() + info.standardiser.logDetPerFrame();
+/// Models with different contexts are compared on the frames that all of them score.
+void summariseLikelihoods(std::vector<SystemResult>& systems) {
+  int first = 0;
+  for (const SystemResult& s : systems) first = std::max(first, s.info.context);
+  for (SystemResult& s : systems) {
+    s.naturalLikelihood = summarise(s.info, s.naturalScores, first);
+    s.heldOutLikelihood = summarise(s.info, s.heldOutScores, first);
+  }
 }
 
 }  // namespace
+
+std::string labelOf(const SystemResult& system) {
+  return system.temperature == 1.0
+             ? system.name
+             : fmt::format("{}, temperature {:g}", system.name, system.temperature);
+}
 
 ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
                                Progress& progress) {
@@ -233,12 +231,12 @@ ExperimentResult runExperiment(const Experiment& experiment, std::span<const Mod
     if (experiment.heldOutSamples > 0)
       sampleHeldOut(*model, experiment, out.natural, result, heldOut, ranks);
     samplePaths(*model, experiment, result, paths, ranks);
-    result.linearGaussianNats = floorOf(result.info);
     out.systems.push_back(std::move(result));
   }
   if (out.systems.empty() && !experiment.systems.empty())
     throwInput({.path = experiment.title, .item = "key 'systems'"},
                "a system that fits the natural motion", "none: {}", out.leftOut.back().why);
+  summariseLikelihoods(out.systems);
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include "base/ranks.h"
 #include "experiment/left_out.h"
 #include "experiment/sample_set.h"
+#include "model/likelihood.h"
 #include "model/motion_model.h"
 #include "model/scorer.h"
 
@@ -29,12 +30,15 @@ struct SystemResult {
   double temperature = 1.0;
   std::vector<Clip> heldOut;  ///< along the natural clips' control
   std::vector<std::vector<RootFrame>> heldOutPaths;
-  std::vector<ClipScore> naturalScores, heldOutScores;
-  std::map<std::string, PathSamples> paths;  ///< by the path's name
-  double framesPerSecond = 0.0;              ///< of sampling
-  double naturalNatsPerFrame = 0.0;          ///< mean over all scored frames, poses in metres
-  double linearGaussianNats = 0.0;           ///< the floor, same unit; NaN where not stored
+  std::vector<ClipScore> naturalScores, heldOutScores;  ///< of every clip, also too short ones
+  std::map<std::string, PathSamples> paths;             ///< by the path's name
+  double framesPerSecond = 0.0;                         ///< of sampling
+  /// Over the frames that every system scores; nats per frame, cm.
+  LikelihoodSummary naturalLikelihood, heldOutLikelihood;
 };
+
+/// Its name, with the temperature of its samples unless that is 1.
+std::string labelOf(const SystemResult& system);
 
 struct ExperimentResult {
   Experiment experiment;

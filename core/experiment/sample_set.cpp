@@ -24,10 +24,10 @@ SampleSet drawSteered(const MotionModel& model, const SampleRecipe& recipe, Prog
     steering.options.sample += i;
     const LiveRollout rollout = replay(borrowed, steering);
     const FeatureSequence sequence = rollout.sequence();
-    std::vector<SampledMotion> motions{{std::make_shared<const Clip>(sampledClip(model, sequence)),
-                                        sequence.frameCount() > model.info().context
-                                            ? scoreSequence(model, sequence)
-                                            : ClipScore{}}};
+    Progress scoring = progress.part(0.0, 0.0);
+    std::vector<SampledMotion> motions{
+        {std::make_shared<const Clip>(sampledClip(model, sequence)),
+         scoreSequences(model, {&sequence, 1}, false, scoring).front()}};
     out.wanted = rollout.trajectory();
     out.motions.push_back(motions.front());
     if (sink) sink(out.wanted, std::move(motions));

@@ -93,14 +93,16 @@ TrainingBatch Batches::gather(const std::vector<int64_t>& windows) const {
   const auto index = torch::tensor(rows).to(m_pose.device());
   return {m_pose.index_select(0, index).view({b, m_windowFrames, -1}),
           m_control.index_select(0, index).view({b, m_windowFrames, -1}),
-          torch::tensor(mask).view({b, m_windowFrames}).to(m_pose.device())};
+          torch::tensor(mask).view({b, m_windowFrames}).to(m_pose.device()),
+          {},
+          {}};
 }
 
 TrainingFrames Batches::frames(int64_t context, int64_t lookahead) const {
   std::vector<int64_t> usable;
   for (size_t s = 0; s < m_offsets.size(); ++s)
     for (int64_t t = context; t < m_lengths[s] - lookahead; ++t) usable.push_back(m_offsets[s] + t);
-  return {m_pose, m_control, torch::tensor(usable, torch::kInt64).to(m_pose.device())};
+  return {m_pose, m_control, torch::tensor(usable, torch::kInt64).to(m_pose.device()), {}};
 }
 
 std::pair<std::vector<FeatureSequence>, std::vector<FeatureSequence>> splitValidation(

@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "base/hash.h"
+#include "model/linear_gaussian.h"
 #include "model/motion_model.h"
 
 namespace marey {
@@ -72,6 +73,9 @@ std::vector<SequenceScore> MotionModel::observeMany(std::span<RolloutState> stat
   std::vector<SequenceScore> out;
   for (size_t i = 0; i < sequences.size(); ++i) {
     between();
+    if (sequences[i].targets != nullptr)
+      throw InputError({.path = info().family}, "a family that tells poses from what is scored",
+                       "one that does not");
     out.push_back(observe(states[i], *sequences[i].poses, *sequences[i].controls));
   }
   return out;
@@ -150,6 +154,8 @@ void storeCommon(const ModelInfo& info, TensorFile& file) {
   file.metadata["config"] = info.config;
   file.metadata["features"] = toJson(info.features);
   file.metadata["provenance"] = info.provenance;
+  if (!info.observation.none()) file.metadata["observation"] = toJson(info.observation);
+  if (info.yardstick) store(*info.yardstick, file);
   if (info.skeleton) file.metadata["skeleton"] = toJson(*info.skeleton);
   if (info.standardiser.empty()) return;
   file.tensors["standardiser/pose_mean"] = vectorTensor(info.standardiser.poseMean);
@@ -168,6 +174,10 @@ ModelInfo loadCommon(const TensorFile& file, const std::string& origin) {
   out.config = reader.raw("config");
   out.features = featureSpecFromJson(reader.raw("features"), origin);
   if (reader.has("provenance")) out.provenance = reader.raw("provenance");
+  if (reader.has("observation"))
+    out.observation = observationNoiseFromJson(reader.raw("observation"), origin);
+  out.yardstick =
+      loadLinearGaussian(file, out.poseDim, out.controlDim, out.observation.floorM, origin);
   if (reader.has("skeleton")) out.skeleton = skeletonFromJson(reader.raw("skeleton"), origin);
   if (file.tensors.contains("standardiser/pose_mean")) {
     out.standardiser = {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/tensor_file.h"
+#include "model/observation.h"
 #include "motion/features.h"
 
 namespace marey {
@@ -27,6 +28,8 @@ struct Standardiser {
   double logDetPerFrame() const;
 };
 
+struct LinearGaussian;  // model/linear_gaussian.h
+
 struct ModelInfo {
   std::string family;   ///< "moglow", ...
   std::string variant;  ///< free name of the configuration, "moglow-small"
@@ -37,6 +40,9 @@ struct ModelInfo {
   FeatureSpec features;
   std::shared_ptr<const Skeleton> skeleton;  ///< null for models imported without one
   Standardiser standardiser;
+  ObservationNoise observation;  ///< through which poses are scored; none in imported models
+  /// Fitted on the same training data; null in models that were stored without one.
+  std::shared_ptr<const LinearGaussian> yardstick;
   Json config;       ///< hyper-parameters as used
   Json provenance;   ///< data set, steps, metrics, command
   std::string hash;  ///< content hash of the weights
@@ -58,6 +64,8 @@ struct SequenceScore {
 struct ObservedSequence {
   const Matrix* poses = nullptr;
   const Matrix* controls = nullptr;
+  /// [T, D]: what is scored in place of the poses, which stay the history; null: the poses.
+  const Matrix* targets = nullptr;
 };
 
 /// How a model computes. The engine's results are the same bits for any batch and thread count on
@@ -91,7 +99,8 @@ class MotionModel {
                                 const Matrix& controls) const = 0;
   /// The same for many sequences, each with the state of a batch of one. Where a family has a way
   /// to advance them together it does, and a sequence's result does not depend on the others.
-  /// `between` is called every few frames and may throw; the states are then of no use.
+  /// `between` is called every few frames and may throw; the states are then of no use. A family
+  /// whose models have observation noise overrides this and heeds `targets`.
   virtual std::vector<SequenceScore> observeMany(std::span<RolloutState> states,
                                                  std::span<const ObservedSequence> sequences,
                                                  const std::function<void()>& between) const;

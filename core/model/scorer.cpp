@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "base/error.h"
+#include "model/linear_gaussian.h"
 
 namespace marey {
 namespace {
@@ -23,7 +25,17 @@ Matrix withLookahead(const Matrix& control, int lookahead) {
 
 }  // namespace
 
+double toCentimetresPerFrame(const Standardiser& standardiser) {
+  return standardiser.logDetPerFrame() -
+         static_cast<double>(standardiser.poseStd.size()) * std::log(100.0);
+}
+
+int fewestFrames(const ModelInfo& info) {
+  return info.context + 1;
+}
+
 double ClipScore::meanNatsPerFrame() const {
+  if (loglikNats.empty()) return std::numeric_limits<double>::quiet_NaN();
   return std::accumulate(loglikNats.begin(), loglikNats.end(), 0.0) /
          static_cast<double>(loglikNats.size());
 }
@@ -40,23 +52,33 @@ struct Lane {
   Matrix control;  ///< with look-ahead
 };
 
-void check(const ModelInfo& info, const FeatureSequence& features) {
-  if (features.frameCount() <= info.context)
+/// Refuses a sequence that is scored alone and cannot be.
+void requireLongEnough(const ModelInfo& info, const FeatureSequence& features) {
+  if (features.frameCount() < fewestFrames(info))
     throwInput({.path = features.name},
                fmt::format("more than {} frames at {} per second (the model's context)",
                            info.context, info.features.fps),
                "{}", features.frameCount());
 }
 
-void append(const SequenceScore& piece, double shift, ClipScore& out) {
+/// One of the draws of a model's observation noise, or none.
+struct Draw {
+  int index = 0;
+  bool noisy = false;
+  double weight = 1.0;
+};
+
+/// Adds a piece's share to the mean over the draws. Frames are those of the clip.
+void add(const SequenceScore& piece, long first, double weight, ClipScore& out) {
   for (long t = 0; t < piece.latent.rows(); ++t) {
-    out.loglikNats.push_back(piece.loglikNats[static_cast<size_t>(t)] + shift);
-    out.latentNorm.push_back(piece.latent.row(t).cast<double>().norm());
+    const auto at = static_cast<size_t>(first - out.firstFrame + t);
+    out.loglikNats[at] += weight * piece.loglikNats[static_cast<size_t>(t)];
+    out.latentNorm[at] += weight * piece.latent.row(t).cast<double>().norm();
   }
 }
 
 /// Lanes in order of falling length, so that those that still go on are always the first ones.
-void scoreGroup(const MotionModel& model, const std::vector<Lane>& lanes, double shift,
+void scoreGroup(const MotionModel& model, const std::vector<Lane>& lanes, const Draw& draw,
                 Progress& progress, std::vector<ClipScore>& out) {
   const ModelInfo& info = model.info();
   std::vector<RolloutState> states;
@@ -66,22 +88,61 @@ void scoreGroup(const MotionModel& model, const std::vector<Lane>& lanes, double
                                                 static_cast<long>(info.context) * info.poseDim)));
   const long longest = lanes.front().features->pose.rows();
   for (long first = info.context; first < longest; first += kPiece) {
-    std::vector<Matrix> poses, controls;
+    std::vector<Matrix> poses, controls, targets;
     for (const Lane& lane : lanes) {
       const long count = std::min<long>(kPiece, lane.features->pose.rows() - first);
       if (count <= 0) break;
       poses.emplace_back(lane.features->pose.middleRows(first, count));
+      if (draw.noisy)
+        targets.emplace_back(poses.back() + observationNoise(info.observation, draw.index, first,
+                                                             count, info.poseDim));
       controls.emplace_back(
           lane.control.middleRows(first - info.context, info.context + count + info.lookahead));
     }
     std::vector<ObservedSequence> observed;
-    for (size_t i = 0; i < poses.size(); ++i) observed.push_back({&poses[i], &controls[i]});
+    for (size_t i = 0; i < poses.size(); ++i)
+      observed.push_back({&poses[i], &controls[i], draw.noisy ? &targets[i] : nullptr});
     const auto scores = model.observeMany(std::span(states).first(observed.size()), observed,
                                           [&] { progress.throwIfCancelled(); });
-    for (size_t i = 0; i < scores.size(); ++i) append(scores[i], shift, out[lanes[i].index]);
+    for (size_t i = 0; i < scores.size(); ++i)
+      add(scores[i], first, draw.weight, out[lanes[i].index]);
     progress.report(static_cast<double>(first + kPiece) / static_cast<double>(longest + kPiece),
                     "scoring");
   }
+}
+
+/// Every draw of the model's noise, or the poses as they are.
+void scoreDraws(const MotionModel& model, const std::vector<Lane>& lanes, Progress& progress,
+                std::vector<ClipScore>& out) {
+  const ObservationNoise& noise = model.info().observation;
+  const int draws = std::max(1, noise.draws);
+  for (int i = 0; i < draws; ++i) {
+    Progress part = progress.part(static_cast<double>(i) / draws, (i + 1.0) / draws);
+    scoreGroup(model, lanes, {i, !noise.none(), 1.0 / draws}, part, out);
+  }
+}
+
+/// What is known of a score before its frames are.
+ClipScore begun(const ModelInfo& info, const FeatureSequence& features) {
+  ClipScore out{.name = features.name, .frames = features.frameCount(), .firstFrame = info.context};
+  const auto scored = static_cast<size_t>(std::max(0, out.frames - info.context));
+  out.loglikNats.assign(scored, 0.0);
+  out.latentNorm.assign(scored, 0.0);
+  return out;
+}
+
+void finish(const ModelInfo& info, const FeatureSequence& features, bool standardised,
+            ClipScore& out) {
+  const double logDet = toCentimetresPerFrame(info.standardiser);
+  for (double& nats : out.loglikNats) nats += standardised ? 0.0 : logDet;
+  out.bitsPerDimension = -out.meanNatsPerFrame() / (std::numbers::ln2 * info.poseDim);
+  if (!info.yardstick || out.tooShort()) return;
+  out.linearGaussianNats = logDensity(*info.yardstick, features, out.firstFrame);
+  // Of poses in metres.
+  const double shift = (standardised ? 0.0 : logDet) - info.standardiser.logDetPerFrame();
+  for (double& nats : out.linearGaussianNats) nats += shift;
+  if (info.skeleton && 3 * info.skeleton->jointCount() == info.poseDim)
+    out.oddestJoint = leastExplainedJoints(*info.yardstick, features, out.firstFrame);
 }
 
 }  // namespace
@@ -90,14 +151,15 @@ std::vector<ClipScore> scoreSequences(const MotionModel& model,
                                       std::span<const FeatureSequence> sequences, bool standardised,
                                       Progress& progress) {
   const ModelInfo& info = model.info();
-  for (const FeatureSequence& features : sequences) check(info, features);
-  std::vector<size_t> order(sequences.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<ClipScore> out;
+  std::vector<size_t> order;
+  for (size_t i = 0; i < sequences.size(); ++i) {
+    out.push_back(begun(info, sequences[i]));
+    if (!out.back().tooShort()) order.push_back(i);
+  }
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
     return sequences[a].frameCount() > sequences[b].frameCount();
   });
-  std::vector<ClipScore> out(sequences.size());
-  const double shift = standardised ? 0.0 : info.standardiser.logDetPerFrame();
   const auto all = static_cast<double>(order.size());
   for (size_t first = 0; first < order.size(); first += kTogether) {
     const size_t last = std::min(first + kTogether, order.size());
@@ -107,19 +169,16 @@ std::vector<ClipScore> scoreSequences(const MotionModel& model,
                        withLookahead(sequences[order[i]].control, info.lookahead)});
     Progress part =
         progress.part(static_cast<double>(first) / all, static_cast<double>(last) / all);
-    scoreGroup(model, lanes, shift, part, out);
+    scoreDraws(model, lanes, part, out);
   }
-  for (size_t i = 0; i < out.size(); ++i) {
-    out[i].name = sequences[i].name;
-    out[i].firstFrame = info.context;
-    out[i].bitsPerDimension = -out[i].meanNatsPerFrame() / (std::numbers::ln2 * info.poseDim);
-  }
+  for (size_t i = 0; i < out.size(); ++i) finish(info, sequences[i], standardised, out[i]);
   return out;
 }
 
 ClipScore scoreSequence(const MotionModel& model, const FeatureSequence& features,
                         bool standardised) {
   Progress progress;
+  requireLongEnough(model.info(), features);
   return std::move(scoreSequences(model, {&features, 1}, standardised, progress).front());
 }
 
@@ -140,7 +199,13 @@ std::vector<ClipScore> scoreClips(const MotionModel& model, std::span<const Clip
 
 ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardised) {
   Progress progress;
-  return std::move(scoreClips(model, {&clip, 1}, standardised, progress).front());
+  const std::string& path = clip.source.path.empty() ? clip.name : clip.source.path;
+  requireSameJoints(model.info(), clip, path);
+  FeatureSequence features = extractFeatures(clip, model.info().features);
+  features.name = path;
+  ClipScore out = scoreSequence(model, features, standardised);
+  out.name = clip.name;
+  return out;
 }
 
 }  // namespace marey

@@ -11,16 +11,38 @@ namespace marey {
 
 struct ClipScore {
   std::string name;
-  int firstFrame = 0;              ///< first scored frame, at the model's rate
-  std::vector<double> loglikNats;  ///< per frame, standardiser's log-determinant included
-                                   ///< unless asked for the standardised density
+  int frames = 0;      ///< of the clip, at the model's rate
+  int firstFrame = 0;  ///< first scored frame, at the model's rate
+  /// Per frame: of poses in centimetres, unless asked for the standardised density or the model
+  /// has no standardiser.
+  std::vector<double> loglikNats;
   std::vector<double> latentNorm;  ///< |z| per frame
-  double bitsPerDimension = 0.0;   ///< mean, -log2 p / D
-  double meanNatsPerFrame() const;
+  /// The yardstick's of the same frames, in the same unit; empty for models without one.
+  std::vector<double> linearGaussianNats;
+  /// Of the same frames: the joint that the others explain least, by the yardstick; empty without
+  /// one, or where poses are no joints.
+  std::vector<int> oddestJoint;
+  double bitsPerDimension = 0.0;    ///< mean, -log2 p / D
+  double meanNatsPerFrame() const;  ///< NaN where nothing was scored
+  /// All of it is context: it has no frame to score.
+  bool tooShort() const { return loglikNats.empty(); }
 };
 
+/// Unit of every likelihood that is shown, unless said otherwise.
+inline constexpr const char* kLikelihoodUnit = "nats per frame, cm";
+
+/// Added to a log-density of standardised poses it gives that of poses in centimetres, per frame; 0
+/// for models without a standardiser.
+double toCentimetresPerFrame(const Standardiser& standardiser);
+
+/// Frames that a clip needs to have one that can be scored: the one rule on clips that are too
+/// short. Scoring several leaves those empty (ClipScore::tooShort), for the caller to count and
+/// name; scoring one alone refuses it.
+int fewestFrames(const ModelInfo& info);
+
 /// Scores of many sequences, which advance together where the model can; a sequence's score does
-/// not depend on the others. Throws as scoreSequence; CancelledError within a frame's time.
+/// not depend on the others. Those too short are left empty. Throws CancelledError within a
+/// frame's time.
 std::vector<ClipScore> scoreSequences(const MotionModel& model,
                                       std::span<const FeatureSequence> sequences, bool standardised,
                                       Progress& progress);
@@ -28,13 +50,14 @@ std::vector<ClipScore> scoreSequences(const MotionModel& model,
 std::vector<ClipScore> scoreClips(const MotionModel& model, std::span<const Clip> clips,
                                   bool standardised, Progress& progress);
 
-/// Scores features as they are: what a sampled motion was made of, with the control that it
+/// Scores features: what a sampled motion was made of, with the control that it
 /// was given. Throws InputError when the sequence is not longer than the model's context.
 ClipScore scoreSequence(const MotionModel& model, const FeatureSequence& features,
                         bool standardised = false);
 
 /// The clip's first `context` frames are history; the others are scored from a running state
-/// that starts at zero. `standardised` leaves the standardiser's log-determinant out.
+/// that starts at zero; where the model has observation noise, the mean over its draws
+/// (model/observation.h). `standardised` leaves the standardiser's log-determinant out.
 /// Throws InputError when the clip is too short or of another skeleton.
 ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardised = false);
 

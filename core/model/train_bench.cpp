@@ -53,6 +53,7 @@ class TrainedPath {
     TrainingBatch batch{torch::randn({m_spec.batch, window, m_poseDim}, generator),
                         torch::randn({m_spec.batch, window, m_controlDim}, generator),
                         torch::ones({m_spec.batch, window}),
+                        {},
                         {}};
     const auto begin = std::chrono::steady_clock::now();
     batch.keep = m_net->drawDropout(batch, generator);

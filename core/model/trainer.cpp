@@ -10,8 +10,11 @@
 #include "base/hash.h"
 #include "model/batches.h"
 #include "model/kept_checkpoints.h"
+#include "model/likelihood.h"
+#include "model/linear_gaussian.h"
 #include "model/optimiser.h"
 #include "model/run_files.h"
+#include "model/training_noise.h"
 #include "model/training_pace.h"
 #include "model/training_state.h"
 #include "model/weights.h"
@@ -23,6 +26,8 @@ namespace {
 constexpr int kNonFiniteLimit = 5;
 constexpr int kEvaluationFrames = 400;
 constexpr int64_t kEvaluationBatch = 16;
+constexpr uint64_t kEvaluationSeed = 22;  ///< of the observation noise in evaluations
+constexpr int kYardstickOrder = 3;
 
 /// What the processes agree on before every step; the largest holds.
 constexpr double kGoOn = 0.0, kEnd = 1.0, kCancel = 2.0;
@@ -123,6 +128,11 @@ class Run {
     if (!m_config.useReversed)
       std::erase_if(train, [](const FeatureSequence& s) { return s.name.ends_with("|reverse"); });
     m_pace = trainingPace(train, fps);
+    m_noise.emplace(*m_trainee.net, m_data.standardiser, m_device);
+    if (!m_noise->none())
+      m_yardstick = std::make_shared<const LinearGaussian>(fitLinearGaussian(
+          train, std::min<int>(kYardstickOrder, static_cast<int>(m_trainee.net->context())),
+          m_noise->observation().floorM));
     m_train.emplace(train, m_data.standardiser, window, hop, m_device);
     const int context = static_cast<int>(m_trainee.net->context());
     const int longHop = kEvaluationFrames;
@@ -131,6 +141,12 @@ class Run {
     if (!m_data.test.empty())
       m_test.emplace(m_data.test, m_data.standardiser, kEvaluationFrames + context, longHop,
                      m_device);
+  }
+
+  TrainingFrames trainingFrames() const {
+    auto out = m_train->frames(m_trainee.net->context(), m_trainee.net->lookahead());
+    out.noise = m_noise->deviation();
+    return out;
   }
 
   Json identity() const {
@@ -163,7 +179,7 @@ class Run {
       return;
     }
     if (m_request.init.empty()) {
-      m_facts = net.initialise(m_train->frames(net.context(), net.lookahead()));
+      m_facts = net.initialise(trainingFrames());
     } else {
       loadWeights(net, readTensorFile(m_request.init), m_request.init.string());
       m_facts = {{"initial_weights", m_request.init.filename().string()}};
@@ -197,6 +213,7 @@ class Run {
                                                     static_cast<uint64_t>(m_state.step));
     auto batch = m_train->forStep(m_request.seed, m_state.step, m_config.batch);
     batch.keep = net.drawDropout(batch, generator);
+    batch.noise = m_noise->draw(batch, generator);
     const StepReport report =
         m_optimiser->step(batch, learningRateAt(m_config, m_state.step), m_state.updates + 1);
     if (!report.taken) {
@@ -241,8 +258,11 @@ class Run {
     const auto [rank, size] = m_group->rank();
     for (int64_t first = rank * kEvaluationBatch; first < batches->windowCount();
          first += size * kEvaluationBatch) {
-      const auto batch =
+      auto batch =
           batches->inOrder(first, std::min(kEvaluationBatch, batches->windowCount() - first));
+      auto generator =
+          at::detail::createCPUGenerator(kEvaluationSeed + static_cast<uint64_t>(first));
+      batch.noise = m_noise->draw(batch, generator);
       const double count = scoredFrames(*m_trainee.net, batch);
       if (count == 0.0) continue;
       sum += sumOfLogLikelihood(*m_trainee.net, batch).item<double>();
@@ -255,6 +275,11 @@ class Run {
     return frames > 0.0 ? -sum / frames / std::numbers::ln2 : std::nan("");
   }
 
+  /// Nats per frame of poses in centimetres, of bits per frame of standardised ones.
+  double natsPerFrame(double bits) const {
+    return -bits * std::numbers::ln2 + toCentimetresPerFrame(m_data.standardiser);
+  }
+
   void checkpoint() {
     double valid = 0.0, test = 0.0;
     std::string model;
@@ -265,7 +290,7 @@ class Run {
       if (m_group->leads()) model = serialise(exportModel(valid, test));
     }
     m_lastTrainBits = m_lossCount > 0 ? m_lossSum / m_lossCount / std::numbers::ln2 : std::nan("");
-    m_lastTestNats = -test * std::numbers::ln2 + m_data.standardiser.logDetPerFrame();
+    m_lastTestNats = natsPerFrame(test);
     const double judged = std::isnan(valid) ? m_lastTrainBits : valid;
     const bool best = judged < m_state.bestValid;
     if (best) m_state.bestValid = judged;
@@ -300,11 +325,13 @@ class Run {
   void restate() {
     const AveragedWeights averaged(*m_trainee.net, m_state);
     m_lastTrainBits = std::nan("");
-    m_lastTestNats = -evaluate(m_test) * std::numbers::ln2 + m_data.standardiser.logDetPerFrame();
+    m_lastTestNats = natsPerFrame(evaluate(m_test));
   }
 
-  TensorFile exportModel(double valid, double test) const {
+  TensorFile exportModel(double valid, double test) {
     ModelInfo info;
+    info.observation = m_noise->observation();
+    info.yardstick = m_yardstick;
     info.family = m_family.name;
     info.variant = m_request.config.value("name", m_family.name);
     info.poseDim = m_data.poseDim();
@@ -321,11 +348,12 @@ class Run {
                        {"training", toJson(m_config)},
                        {"facts", m_facts},
                        {"command", m_request.command}};
-    const double shift = m_data.standardiser.logDetPerFrame();
-    if (!std::isnan(valid))
-      info.provenance["valid_nats_per_frame"] = -valid * std::numbers::ln2 + shift;
-    if (!std::isnan(test))
-      info.provenance["test_nats_per_frame"] = -test * std::numbers::ln2 + shift;
+    if (!m_noise->none())
+      info.provenance["floor_directions"] =
+          m_noise->floorDirections(*m_trainee.net, trainingFrames());
+    if (!std::isnan(valid)) info.provenance["valid_nats_per_frame"] = natsPerFrame(valid);
+    if (!std::isnan(test)) info.provenance["test_nats_per_frame"] = natsPerFrame(test);
+    info.provenance["likelihood_unit"] = kLikelihoodUnit;
     info.provenance["training_pace"] = toJson(m_pace);
     info.provenance["bone_lengths_m"] = m_data.boneLengthsM;
     TensorFile file;
@@ -357,6 +385,8 @@ class Run {
   Trainee m_trainee;
   std::optional<Batches> m_train, m_valid, m_test;
   TrainingPace m_pace;
+  std::optional<TrainingNoise> m_noise;
+  std::shared_ptr<const LinearGaussian> m_yardstick;
   std::optional<Optimiser> m_optimiser;
   TrainingState m_state;
   Json m_facts = Json::object();

@@ -34,7 +34,7 @@ struct TrainResult {
   int64_t steps = 0;
   double trainBitsPerFrame = 0.0;  ///< standardised poses, mean since the last checkpoint
   double validBitsPerFrame = 0.0;  ///< of the best checkpoint
-  double testNatsPerFrame = 0.0;   ///< held-out clips, poses in metres, at the end
+  double testNatsPerFrame = 0.0;   ///< held-out clips, poses in centimetres, at the end
   std::filesystem::path best, last;
 };
 

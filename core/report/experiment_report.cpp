@@ -21,7 +21,7 @@ std::vector<ReportSystem> systemsOf(const ExperimentResult& r) {
   std::vector<ReportSystem> out;
   out.push_back({.name = "natural", .natural = true});
   for (size_t i = 0; i < r.systems.size(); ++i) {
-    ReportSystem system{.name = r.systems[i].name, .colourIndex = static_cast<int>(i)};
+    ReportSystem system{.name = labelOf(r.systems[i]), .colourIndex = static_cast<int>(i)};
     for (const auto& [name, samples] : r.systems[i].paths) system.clips[name] = samples.clips;
     out.push_back(std::move(system));
   }
@@ -72,21 +72,36 @@ std::vector<std::vector<double>> longestRuns(const std::vector<ClipScore>& score
                    [](auto a, auto b) { return a->loglikNats.size() > b->loglikNats.size(); });
   if (order.size() > kLikelihoodRuns) order.resize(kLikelihoodRuns);
   std::vector<std::vector<double>> out;
-  for (const auto* score : order) out.push_back(score->loglikNats);
+  for (const auto* score : order) {
+    if (score->tooShort()) continue;
+    out.push_back(score->loglikNats);
+  }
+  return out;
+}
+
+/// What the numbers hang on, and what was left out of them.
+std::string likelihoodNote(const SystemResult& s) {
+  std::string out = floorText(s.info);
+  if (const std::string text = tooShortText(s.naturalLikelihood); !text.empty())
+    out += " Natural motion: " + text + ".";
+  if (const std::string text = tooShortText(s.heldOutLikelihood); !text.empty())
+    out += " Samples: " + text + ".";
   return out;
 }
 
 void addLikelihoods(const ExperimentResult& r, ReportData& out) {
   for (size_t i = 0; i < r.systems.size(); ++i) {
     const SystemResult& s = r.systems[i];
-    LikelihoodPanel panel{.title = "Log-likelihood under " + s.name, .fps = r.experiment.fps};
+    LikelihoodPanel panel{.title = "Log-likelihood under " + labelOf(s), .fps = r.experiment.fps};
     panel.groups.push_back({0, longestRuns(s.naturalScores)});
     std::vector<ClipScore> sampled;
     for (const auto& [name, samples] : s.paths)
       sampled.insert(sampled.end(), samples.scores.begin(), samples.scores.end());
     if (sampled.empty()) sampled = s.heldOutScores;
     panel.groups.push_back({static_cast<int>(i + 1), longestRuns(sampled)});
-    if (std::isfinite(s.linearGaussianNats)) panel.linearGaussianNats = s.linearGaussianNats;
+    if (std::isfinite(s.naturalLikelihood.linearGaussian))
+      panel.linearGaussianNats = s.naturalLikelihood.linearGaussian;
+    panel.note = likelihoodNote(s);
     out.likelihoods.push_back(std::move(panel));
   }
 }

@@ -47,15 +47,6 @@ std::vector<Cell> footstepRow(const std::string& name, const std::vector<Clip>& 
           numberCell(stats::valueOf(stats::statisticByName("bone_length_rmse"), input), 3)};
 }
 
-double meanNats(const std::vector<ClipScore>& scores) {
-  double sum = 0.0, frames = 0.0;
-  for (const auto& score : scores) {
-    sum = std::accumulate(score.loglikNats.begin(), score.loglikNats.end(), sum);
-    frames += static_cast<double>(score.loglikNats.size());
-  }
-  return frames > 0 ? sum / frames : std::nan("");
-}
-
 std::string tableId(const std::string& name) {
   std::string out;
   for (const unsigned char c : name)
@@ -108,7 +99,7 @@ Table statisticTable(const ExperimentResult& r, const SystemResult& system, Prog
             .section = Section::Statistics,
             .columns = {{"statistic"},
                         {"unit"},
-                        {system.name},
+                        {labelOf(system)},
                         {"95 % interval"},
                         {"natural"},
                         {"natural 95 %"},
@@ -154,32 +145,60 @@ Table footstepTable(const ExperimentResult& r) {
   out.rows.push_back(footstepRow("natural", r.natural, stats::controlsEach(r.natural.size()), r));
   for (const auto& s : r.systems)
     if (!s.heldOut.empty())
-      out.rows.push_back(footstepRow(s.name, s.heldOut, heldOutControls(s, r.experiment), r));
+      out.rows.push_back(footstepRow(labelOf(s), s.heldOut, heldOutControls(s, r.experiment), r));
   return out;
 }
+
+namespace {
+
+/// The unit, what is compared, and what the numbers hang on.
+std::string likelihoodCaption(const ExperimentResult& r) {
+  std::string out = fmt::format(
+      "Unit: {}, mean over the frames that every system scores (from frame {} of each clip on). "
+      "linear-Gaussian: a ridge autoregression without a network, fitted on the model's training "
+      "data with the same observation floor and evaluated on the same frames. Effective "
+      "dimensions: directions of pose space in which the model is wider than its floor (over half "
+      "of its variance is its own).",
+      kLikelihoodUnit, r.systems.empty() ? 0 : r.systems.front().naturalLikelihood.firstFrame);
+  for (const auto& s : r.systems) {
+    out += " " + s.name + ": " + floorText(s.info);
+    for (const auto* summary : {&s.naturalLikelihood, &s.heldOutLikelihood})
+      if (const std::string text = tooShortText(*summary); !text.empty()) out += " " + text + ".";
+  }
+  return out;
+}
+
+}  // namespace
 
 Table likelihoodTable(const ExperimentResult& r) {
   Table out{.id = "likelihood",
             .title = "Log-likelihood",
-            .caption =
-                "Nats per frame. The linear-Gaussian value (ridge autoregression on the training "
-                "data) is the floor that a flow has to beat. "
-                "In centimetres a density is lower by ln 100 per value than in metres.",
+            .caption = likelihoodCaption(r),
             .section = Section::Likelihood,
             .columns = {{"system"},
-                        {"natural clips", "nats, m"},
-                        {"natural clips", "nats, cm"},
-                        {"linear-Gaussian", "nats, cm"},
-                        {"own samples", "nats, cm"},
+                        {"natural clips", kLikelihoodUnit},
+                        {"linear-Gaussian", kLikelihoodUnit},
+                        {"own samples", kLikelihoodUnit},
+                        {"per effective dimension", "nats, cm"},
+                        {"effective dimensions"},
+                        {"on the floor", "directions"},
+                        {"clips"},
+                        {"frames"},
+                        {"too short", "clips"},
                         {"parameters", "M"},
                         {"sampling", "frames/s"}}};
   for (const auto& s : r.systems) {
-    const double toCm = s.info.poseDim * std::log(100.0);
-    out.rows.push_back({{s.name},
-                        numberCell(s.naturalNatsPerFrame, 1),
-                        numberCell(s.naturalNatsPerFrame - toCm, 1),
-                        numberCell(s.linearGaussianNats - toCm, 1),
-                        numberCell(meanNats(s.heldOutScores) - toCm, 1),
+    const LikelihoodSummary& natural = s.naturalLikelihood;
+    out.rows.push_back({{labelOf(s)},
+                        numberCell(natural.nats, 1),
+                        numberCell(natural.linearGaussian, 1),
+                        numberCell(s.heldOutLikelihood.nats, 1),
+                        numberCell(natural.natsPerEffectiveDimension, 2),
+                        numberCell(natural.effectiveDimensions, 0),
+                        numberCell(natural.floorDirections, 0),
+                        numberCell(natural.clips, 0),
+                        numberCell(static_cast<double>(natural.frames), 0),
+                        numberCell(static_cast<double>(natural.tooShort.size()), 0),
                         numberCell(static_cast<double>(s.info.parameters) / 1e6, 2),
                         numberCell(s.framesPerSecond, 0)});
   }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "model/likelihood.h"
 #include "report/density.h"
 
 namespace marey::report {
@@ -181,15 +182,16 @@ Figure sceneFigure(const ReportData& data, const ScenePanel& panel, int number) 
 Figure likelihoodFigure(const ReportData& data, const LikelihoodPanel& panel, int number) {
   Chart chart;
   chart.x = {.label = "time", .unit = "s"};
-  chart.y = {.label = "log-likelihood", .unit = "nats/frame"};
+  chart.y = {.label = "log-likelihood", .unit = kLikelihoodUnit};
   for (const LikelihoodGroup& group : panel.groups) addLikelihood(chart, data, group, panel.fps);
   chart.legend = render::LegendPlace::Direct;
   Figure figure{
       .id = figureId("likelihood", number), .section = Section::Likelihood, .title = panel.title};
   figure.caption =
-      "Log-likelihood of each frame under the model, in nats per frame: the line is the median "
-      "over "
-      "runs, the band their 5 to 95 % range. Higher means more expected by the model; drops show "
+      "Log-likelihood of each frame under the model, in nats per frame with poses in centimetres: "
+      "the line "
+      "is the median over runs, the band their 5 to 95 % range. Higher means more expected by the "
+      "model; drops show "
       "frames that it finds unlikely.";
   if (panel.linearGaussianNats) {
     chart.series.push_back({.kind = SeriesKind::HorizontalRule,
@@ -199,10 +201,10 @@ Figure likelihoodFigure(const ReportData& data, const LikelihoodPanel& panel, in
                             .width = 1.4,
                             .dashed = true});
     figure.caption +=
-        " The dashed line is what a linear-Gaussian model without a network reaches: the floor "
-        "that a "
-        "flow has to beat.";
+        " The dashed line is the mean of a linear-Gaussian autoregression over all natural clips, "
+        "fitted on the model's training data with the same observation floor.";
   }
+  if (!panel.note.empty()) figure.caption += " " + panel.note;
   figure.chart = render::single(std::move(chart));
   figure.size = {720, 300};
   return figure;

@@ -92,7 +92,7 @@ Table obedienceTable(const ExperimentResult& r) {
       const bool moves =
           standing.seconds < static_cast<double>(samples.wanted.size() - 1) / r.experiment.fps;
       out.rows.push_back({{path.name},
-                          {s.name},
+                          {labelOf(s)},
                           numberCell(footSpeedQuantile(samples.clips, r.feet, 0.5), 1),
                           numberCell(footSpeedQuantile(samples.clips, r.feet, 0.95), 1),
                           numberCell(moves ? curve.stepsPerS : std::nan(""), 2),

@@ -55,13 +55,15 @@ struct DistributionPanel {
 /// Log-likelihood of many runs over time.
 struct LikelihoodGroup {
   int system = 0;
-  std::vector<std::vector<double>> nats;  ///< runs x frames, nats per frame; NaN where not scored
+  std::vector<std::vector<double>>
+      nats;  ///< runs x frames, nats per frame, cm; NaN where not scored
 };
 struct LikelihoodPanel {
   std::string title;
   double fps = 20.0;
   std::vector<LikelihoodGroup> groups;
-  std::optional<double> linearGaussianNats;  ///< the floor that a flow has to beat
+  std::optional<double> linearGaussianNats;  ///< of the natural clips, where the model has one
+  std::string note;                          ///< what the numbers hang on, what was left out
 };
 
 /// Footsteps counted at every speed tolerance.

@@ -3,19 +3,21 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QHBoxLayout>
+#include <QLabel>
 #include <QPushButton>
+#include <QVBoxLayout>
 #include <algorithm>
 #include <map>
 #include <tuple>
 
 #include "panels/plot_panel.h"
+#include "panels/value_table.h"
 #include "plots/likelihood_data.h"
-
-#include "base/error.h"
 
 namespace marey::gui {
 namespace {
 constexpr double kSmoothingS = 0.5;
+constexpr int kTableHeight = 110;
 
 class LikelihoodPanel : public PlotPanel {
  public:
@@ -43,7 +45,15 @@ class LikelihoodPanel : public PlotPanel {
          std::initializer_list<QWidget*>{m_view, m_smooth, m_score, m_worst, m_worstOf})
       tools()->addWidget(tool);
     tools()->insertStretch(2);
-    chart()->setToolTip(tr("Nats per frame, poses in metres. Higher is more expected."));
+    chart()->setToolTip(tr("Nats per frame, cm. Higher is more expected."));
+    m_table = new ValueTable(this);
+    m_table->setObjectName(QStringLiteral("likelihoodTable"));
+    m_table->setMaximumHeight(kTableHeight);
+    m_left = new QLabel(this);
+    m_left->setObjectName(QStringLiteral("likelihoodLeftOut"));
+    m_left->setWordWrap(true);
+    content()->addWidget(m_table);
+    content()->addWidget(m_left);
     connect(m_view, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
             [this] { redraw(); });
     connect(m_smooth, &QCheckBox::toggled, this, [this] { redraw(); });
@@ -78,12 +88,10 @@ class LikelihoodPanel : public PlotPanel {
       return showHint(
           tr("No log-likelihoods yet: sample a path, or press \"Score natural motion\" "
              "to see the natural clips under the models."));
-    m_floorFiles.clear();
+    m_models.clear();
     for (const ExperimentSystem& system : w.experiment().systems)
-      if (std::any_of(sets.begin(), sets.end(), [&](const MotionSet& set) {
-            return !set.natural && set.system == system.name;
-          }))
-        m_floorFiles.emplace_back(system.name, w.modelFile(system));
+      m_models.emplace(system.name, w.modelFile(system));
+    m_input = std::make_shared<const RowInput>(rowInput(systems));
     redraw();
   }
 
@@ -97,9 +105,22 @@ class LikelihoodPanel : public PlotPanel {
   /// What is drawn, worked out beside the event loop.
   struct Picture {
     std::vector<LikelihoodGroup> groups;
-    std::vector<LikelihoodFloor> floors;
+    std::vector<LikelihoodRow> rows;
     LinkedGrid grid;
   };
+  /// What rows are made of, as values.
+  struct RowInput {
+    std::vector<MotionGroup> groups;
+    std::vector<std::string> systems;
+    std::map<std::string, std::vector<ClipScore>> natural;
+  };
+
+  RowInput rowInput(const std::vector<std::string>& systems) const {
+    RowInput out{.groups = workspace().groups(), .systems = systems, .natural = {}};
+    for (const std::string& system : systems)
+      if (const auto* scores = workspace().naturalScores(system)) out.natural[system] = *scores;
+    return out;
+  }
   using Kind = std::tuple<bool, bool, std::string>;  ///< every motion, smoothed, worst frame of
 
   bool everyMotion() const { return m_view->currentIndex() == 1; }
@@ -123,11 +144,11 @@ class LikelihoodPanel : public PlotPanel {
     const Workspace* w = &workspace();
     compute<Picture>(
         tr("Drawing log-likelihoods"),
-        [w, groups = m_groups, files = m_floorFiles, kind](Progress&) {
-          Picture out{.groups = *groups, .floors = readFloors(*w, files), .grid = {}};
+        [w, groups = m_groups, input = m_input, models = m_models, kind](Progress&) {
+          Picture out{.groups = *groups, .rows = readRows(*w, *input, models), .grid = {}};
           const auto& [every, smoothed, system] = kind;
           if (smoothed) smooth(out.groups, kSmoothingS);
-          out.grid = likelihoodGrid(out.groups, out.floors, every);
+          out.grid = likelihoodGrid(out.groups, out.rows, every);
           if (const auto worst = worstFrame(*groups, std::nullopt, system))
             markWorst(out.grid, out.groups, *worst);
           return out;
@@ -139,23 +160,57 @@ class LikelihoodPanel : public PlotPanel {
         });
   }
 
-  static std::vector<LikelihoodFloor> readFloors(
-      const Workspace& workspace, const std::vector<std::pair<std::string, std::string>>& files) {
-    std::vector<LikelihoodFloor> floors;
-    for (const auto& [system, file] : files) {
-      try {
-        if (const auto nats = linearGaussianFloor(workspace.model(file)->info()))
-          floors.push_back({system, *nats});
-      } catch (const Error&) {
-        // A model that cannot be read is reported where it is sampled; it has no floor.
-      }
+  static std::vector<LikelihoodRow> readRows(const Workspace& workspace, const RowInput& input,
+                                             const std::map<std::string, std::string>& models) {
+    return likelihoodRows(
+        input.groups, input.systems,
+        [&](const std::string& system) {
+          const auto found = input.natural.find(system);
+          return found == input.natural.end() ? nullptr : &found->second;
+        },
+        [&](const std::string& system) -> std::shared_ptr<const ModelInfo> {
+          try {
+            const auto model = workspace.model(models.at(system));
+            return {model, &model->info()};
+          } catch (const std::exception&) {
+            // A model that cannot be read is reported where it is sampled; it has no row.
+            return nullptr;
+          }
+        });
+  }
+
+  void showRows(const std::vector<LikelihoodRow>& rows) {
+    std::vector<std::vector<ValueCell>> cells;
+    QStringList left;
+    for (const LikelihoodRow& row : rows) {
+      const LikelihoodSummary& s = row.summary;
+      const QString floor = QString::fromStdString(row.floor);
+      cells.push_back({{QString::fromStdString(row.name), std::nullopt, floor},
+                       {QString::fromStdString(row.system), std::nullopt, floor},
+                       numberCell(s.nats, 1),
+                       numberCell(s.linearGaussian, 1),
+                       numberCell(s.natsPerEffectiveDimension, 2),
+                       numberCell(s.effectiveDimensions, 0),
+                       numberCell(s.floorDirections, 0),
+                       numberCell(s.clips, 0),
+                       numberCell(static_cast<double>(s.frames), 0),
+                       numberCell(static_cast<double>(s.tooShort.size()), 0)});
+      if (!s.tooShort.empty())
+        left << QString::fromStdString(row.name + ", " + row.system + ": " + tooShortText(s));
     }
-    return floors;
+    m_table->setRows({tr("motion"), tr("model"), tr("nats per frame, cm"),
+                      tr("linear-Gaussian, nats per frame, cm"),
+                      tr("nats per effective dimension, cm"), tr("effective dimensions"),
+                      tr("on the floor"), tr("clips"), tr("frames"), tr("too short")},
+                     cells);
+    m_left->setText(left.join(QStringLiteral("\n")));
+    m_left->setVisible(!left.isEmpty());
   }
 
   void show(const std::shared_ptr<const Picture>& picture) {
     m_shown = picture;
     showGrid(picture->grid);
+    showRows(picture->rows);
   }
 
   void goToWorst() {
@@ -171,7 +226,10 @@ class LikelihoodPanel : public PlotPanel {
   std::shared_ptr<const std::vector<LikelihoodGroup>> m_groups;  ///< as scored
   std::map<Kind, std::shared_ptr<const Picture>> m_pictures;     ///< of these groups
   std::shared_ptr<const Picture> m_shown;
-  std::vector<std::pair<std::string, std::string>> m_floorFiles;
+  std::shared_ptr<const RowInput> m_input;
+  std::map<std::string, std::string> m_models;  ///< file of each system
+  ValueTable* m_table = nullptr;
+  QLabel* m_left = nullptr;  ///< what was too short
 };
 }  // namespace
 

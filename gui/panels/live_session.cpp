@@ -149,9 +149,10 @@ void LiveSession::run(const std::stop_token& stop) {
 MotionGroup keptGroup(const LiveRollout& rollout, const ExperimentSystem& system,
                       SampleRecipe recipe, int colourIndex) {
   const FeatureSequence sequence = rollout.sequence();
-  Motion motion{std::make_shared<const Clip>(sampledClip(rollout.model(), sequence)), {}, true};
-  if (sequence.frameCount() > rollout.model().info().context)
-    motion.score = scoreSequence(rollout.model(), sequence);
+  Progress progress;
+  const Motion motion{std::make_shared<const Clip>(sampledClip(rollout.model(), sequence)),
+                      scoreSequences(rollout.model(), {&sequence, 1}, false, progress).front(),
+                      true};
   recipe.system = system;
   recipe.steering = std::make_shared<const Steering>(rollout.steering());
   recipe.path = {.name = "steered", .path = {}, .wayPoints = rollout.walkedPath(), .seconds = 0};

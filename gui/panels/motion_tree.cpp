@@ -257,7 +257,9 @@ QVariant MotionTree::motionData(const MotionGroup& group, size_t index, int colu
     case Seconds:
       return QString::number(motion.clip->seconds(), 'f', 2);
     case Score:
-      return motion.score ? QString::number(motion.score->meanNatsPerFrame(), 'f', 1) : QString();
+      if (!motion.score) return {};
+      return motion.score->tooShort() ? tr("too short")
+                                      : QString::number(motion.score->meanNatsPerFrame(), 'f', 1);
     default:
       return {};
   }
@@ -279,7 +281,7 @@ bool MotionTree::setData(const QModelIndex& index, const QVariant& value, int ro
 
 QVariant MotionTree::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation == Qt::Horizontal && role == Qt::ToolTipRole && section == Score)
-    return tr("Mean log-likelihood of a sample under its own model, nats per frame");
+    return tr("Mean log-likelihood of a sample under its own model, nats per frame, cm");
   if (orientation == Qt::Horizontal && role == Qt::ToolTipRole && section == Use)
     return tr("Counted by plots and statistics, whether it is shown or hidden");
   if (orientation == Qt::Horizontal && role == Qt::ToolTipRole && section == Name)
@@ -293,7 +295,7 @@ QVariant MotionTree::headerData(int section, Qt::Orientation orientation, int ro
     case Seconds:
       return tr("s");
     case Score:
-      return tr("nats");
+      return tr("nats, cm");
     case Use:
       return tr("use");
     default:

@@ -48,7 +48,7 @@ void colourByValue(const Workspace& workspace, const SceneSettings& settings,
   const MotionColours& colours = colouring.of(sources, settings.colourBy, modelRate(workspace));
   content.legend.scale = colours.scale;
   content.legend.scaleTitle =
-      likelihood ? tr("Log-likelihood (nats per frame)") : tr("Root speed (m/s)");
+      likelihood ? tr("Log-likelihood (nats per frame, cm)") : tr("Root speed (m/s)");
   QStringList notes;
   if (likelihood && natural && !system.empty())
     notes << tr("Natural motion under %1").arg(QString::fromStdString(system));

@@ -17,6 +17,14 @@ using render::Series;
 using render::SeriesKind;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+LikelihoodRun runOf(MotionId id, const ClipScore& score, const Clip& clip) {
+  LikelihoodRun out{id, score.firstFrame, score.loglikNats};
+  for (const int joint : score.oddestJoint)
+    if (joint < clip.jointCount())
+      out.joints.push_back(clip.skeleton->names[static_cast<size_t>(joint)]);
+  return out;
+}
+
 void addNatural(std::vector<LikelihoodGroup>& out, const MotionSet& set, const std::string& system,
                 const std::vector<ClipScore>& scores, double fps) {
   LikelihoodGroup group{.look = lookOf(set),
@@ -28,11 +36,12 @@ void addNatural(std::vector<LikelihoodGroup>& out, const MotionSet& set, const s
   group.look.dashed =
       std::any_of(out.begin(), out.end(), [](const LikelihoodGroup& g) { return g.look.natural; });
   group.look.ids.clear();
-  for (const MotionId& id : set.ids) {
+  for (size_t at = 0; at < set.ids.size(); ++at) {
+    const MotionId id = set.ids[at];
     const auto index = static_cast<size_t>(id.index);
     if (index >= scores.size() || scores[index].loglikNats.empty()) continue;
     group.look.ids.push_back(id);
-    group.runs.push_back({id, scores[index].firstFrame, scores[index].loglikNats});
+    group.runs.push_back(runOf(id, scores[index], *set.clips[at]));
   }
   group.notScored = static_cast<int>(set.ids.size() - group.runs.size());
   out.push_back(std::move(group));
@@ -77,6 +86,40 @@ void addCloud(LinkedGrid& out, const LikelihoodGroup& group) {
   out.add(std::move(cloud), group.look.ids);
 }
 
+/// Scores of one set under one system.
+struct Scored {
+  LikelihoodRow row;
+  std::vector<ClipScore> scores;
+  std::shared_ptr<const ModelInfo> info;
+};
+
+std::vector<Scored> scoredSets(const std::vector<MotionGroup>& groups, const MotionSet& set,
+                               const std::vector<std::string>& systems,
+                               const NaturalScores& naturalScores) {
+  const auto owner = std::find_if(groups.begin(), groups.end(),
+                                  [&](const MotionGroup& g) { return g.id == set.group; });
+  std::vector<Scored> out;
+  for (const std::string& system : set.natural ? systems : std::vector<std::string>{set.system}) {
+    const auto* natural = set.natural ? naturalScores(system) : nullptr;
+    if (set.natural && natural == nullptr) continue;
+    Scored scored{.row = {set.natural ? "natural" : set.name, system, set.natural, {}, {}},
+                  .scores = {},
+                  .info = nullptr};
+    for (const MotionId& id : set.ids) {
+      const auto index = static_cast<size_t>(id.index);
+      const Motion& motion = owner->motions[index];
+      if (natural != nullptr && index < natural->size() && !(*natural)[index].name.empty()) {
+        scored.scores.push_back((*natural)[index]);
+      } else if (!set.natural && motion.score) {
+        scored.scores.push_back(*motion.score);
+        scored.scores.back().name = motion.clip->name;
+      }
+    }
+    if (!scored.scores.empty()) out.push_back(std::move(scored));
+  }
+  return out;
+}
+
 /// One frame far below all others must not flatten the rest.
 std::optional<std::pair<double, double>> centralRange(const std::vector<LikelihoodGroup>& groups) {
   std::vector<double> all;
@@ -114,7 +157,7 @@ std::vector<LikelihoodGroup> likelihoodGroups(const std::vector<MotionGroup>& gr
       const auto& score = owner->motions[static_cast<size_t>(id.index)].score;
       if (!score || score->loglikNats.empty()) continue;
       group.look.ids.push_back(id);
-      group.runs.push_back({id, score->firstFrame, score->loglikNats});
+      group.runs.push_back(runOf(id, *score, *owner->motions[static_cast<size_t>(id.index)].clip));
     }
     if (!group.runs.empty()) out.push_back(std::move(group));
   }
@@ -150,7 +193,9 @@ std::optional<WorstFrame> worstFrame(const std::vector<LikelihoodGroup>& groups,
         for (size_t i = 0; i < run.nats.size(); ++i) {
           const double time = (run.firstFrame + static_cast<double>(i)) / group.fps;
           if (range && (time < range->beginS || time > range->endS)) continue;
-          if (!worst || run.nats[i] < worst->nats) worst = WorstFrame{run.id, time, run.nats[i]};
+          if (!worst || run.nats[i] < worst->nats)
+            worst = WorstFrame{run.id, time, run.nats[i],
+                               i < run.joints.size() ? run.joints[i] : std::string()};
         }
     }
     if (worst) break;
@@ -177,10 +222,23 @@ std::string notScoredText(const std::vector<LikelihoodGroup>& groups) {
   return out;
 }
 
-std::optional<double> linearGaussianFloor(const ModelInfo& info) {
-  const Json facts = info.provenance.value("facts", Json::object());
-  if (!facts.contains("linear_gaussian_nats_per_frame")) return std::nullopt;
-  return facts["linear_gaussian_nats_per_frame"].get<double>() + info.standardiser.logDetPerFrame();
+std::vector<LikelihoodRow> likelihoodRows(const std::vector<MotionGroup>& groups,
+                                          const std::vector<std::string>& systems,
+                                          const NaturalScores& naturalScores,
+                                          const ModelFacts& facts) {
+  std::vector<Scored> sets;
+  for (const MotionSet& set : motionSets(groups))
+    for (Scored& scored : scoredSets(groups, set, systems, naturalScores))
+      if ((scored.info = facts(scored.row.system))) sets.push_back(std::move(scored));
+  int first = 0;
+  for (const Scored& set : sets) first = std::max(first, set.info->context);
+  std::vector<LikelihoodRow> out;
+  for (Scored& set : sets) {
+    set.row.summary = summarise(*set.info, set.scores, first);
+    set.row.floor = floorText(*set.info);
+    out.push_back(std::move(set.row));
+  }
+  return out;
 }
 
 namespace {
@@ -207,38 +265,43 @@ MotionCount countOf(const LikelihoodGroup& group) {
   return count;
 }
 
-void addFloor(LinkedGrid& out, const LikelihoodFloor& floor, bool named) {
+/// What the linear-Gaussian autoregression of a system makes of the natural clips.
+void addRule(LinkedGrid& out, const LikelihoodRow& row, bool named) {
   render::Chart& chart = out.grid.charts.back();
+  const double nats = row.summary.linearGaussian;
   if (chart.y.range) {
-    const double margin = 0.04 * (chart.y.range->second - floor.nats);
-    chart.y.range->first = std::min(chart.y.range->first, floor.nats - margin);
+    const double margin = 0.04 * (chart.y.range->second - nats);
+    chart.y.range->first = std::min(chart.y.range->first, nats - margin);
   }
   out.add({.kind = SeriesKind::HorizontalRule,
-           .name = named ? "linear-Gaussian, " + floor.system : "linear-Gaussian",
+           .name = named ? "linear-Gaussian, " + row.system : "linear-Gaussian",
            .colour = render::grey(0.45),
-           .y = {floor.nats},
+           .y = {nats},
            .width = 1.4,
            .dashed = true});
 }
 
 /// The groups of one skeleton in the last chart of the grid.
 void addBody(LinkedGrid& out, const std::vector<LikelihoodGroup>& groups,
-             const std::vector<LikelihoodFloor>& floors, bool everyMotion) {
+             const std::vector<LikelihoodRow>& rows, bool everyMotion) {
   render::Chart& chart = out.grid.charts.back();
   chart.x = {.label = "time", .unit = "s"};
-  chart.y = {.label = "log-likelihood", .unit = "nats/frame"};
+  chart.y = {.label = "log-likelihood", .unit = kLikelihoodUnit};
   for (const LikelihoodGroup& group : groups)
     everyMotion ? addCloud(out, group) : addBand(out, group);
   if (everyMotion) chart.y.range = centralRange(groups);
-  for (const LikelihoodFloor& floor : floors)
-    if (std::any_of(groups.begin(), groups.end(),
-                    [&](const LikelihoodGroup& g) { return g.system == floor.system; }))
-      addFloor(out, floor, floors.size() > 1);
+  std::vector<const LikelihoodRow*> rules;
+  for (const LikelihoodRow& row : rows)
+    if (row.natural && std::isfinite(row.summary.linearGaussian) &&
+        std::any_of(groups.begin(), groups.end(),
+                    [&](const LikelihoodGroup& g) { return g.system == row.system; }))
+      rules.push_back(&row);
+  for (const LikelihoodRow* row : rules) addRule(out, *row, rules.size() > 1);
 }
 }  // namespace
 
 LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
-                          const std::vector<LikelihoodFloor>& floors, bool everyMotion) {
+                          const std::vector<LikelihoodRow>& rows, bool everyMotion) {
   if (groups.empty()) return {.grid = render::single({})};
   LinkedGrid out;
   const std::vector<int> charts = chartsOf(groups);
@@ -248,7 +311,7 @@ LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
     for (size_t g = 0; g < groups.size(); ++g)
       if (charts[g] == body) alike.push_back(groups[g]);
     out.grid.charts.push_back({});
-    addBody(out, alike, floors, everyMotion);
+    addBody(out, alike, rows, everyMotion);
     if (bodies > 1)
       out.grid.charts.back().title = fmt::format("{} joints: {}", alike.front().body->jointCount(),
                                                  fmt::join(systemsIn(alike), ", "));
@@ -269,7 +332,8 @@ void markWorst(LinkedGrid& grid, const std::vector<LikelihoodGroup>& groups,
       continue;
     grid.addTo(charts[g],
                {.kind = SeriesKind::VerticalRule,
-                .name = fmt::format("worst frame, {:.0f} nats", worst.nats),
+                .name = fmt::format("worst frame, {:.0f} nats, cm{}{}", worst.nats,
+                                    worst.joint.empty() ? "" : ": ", worst.joint),
                 .colour = render::grey(0.45),
                 .x = {worst.timeS},
                 .width = 1.2,

@@ -1,4 +1,4 @@
-// Log-likelihoods over time: nats per frame, poses in metres (numbers as in ClipScore).
+// Log-likelihoods over time: nats per frame, cm (numbers as in ClipScore).
 #pragma once
 
 #include <functional>
@@ -6,12 +6,15 @@
 
 #include "plots/linked_grid.h"
 
+#include "model/likelihood.h"
+
 namespace marey::gui {
 
 struct LikelihoodRun {
   MotionId id;
   int firstFrame = 0;  ///< of the first value
   std::vector<double> nats;
+  std::vector<std::string> joints = {};  ///< that stand out, of every value; may be empty
 };
 
 struct LikelihoodGroup {
@@ -40,6 +43,7 @@ void smooth(std::vector<LikelihoodGroup>& groups, double seconds);
 struct WorstFrame {
   MotionId id;
   double timeS = 0.0, nats = 0.0;
+  std::string joint = {};  ///< that stands out in it, where that is known
 };
 /// The least likely frame inside the range under one system, for densities of several have no
 /// common scale: of its samples, and of natural motion where there are none.
@@ -51,18 +55,29 @@ std::vector<std::string> systemsIn(const std::vector<LikelihoodGroup>& groups);
 /// "natural under MG+ 29 of 30 scored"; empty where all are.
 std::string notScoredText(const std::vector<LikelihoodGroup>& groups);
 
-struct LikelihoodFloor {
-  std::string system;
-  double nats = 0.0;
+/// What is said of one set of motions under one system.
+struct LikelihoodRow {
+  std::string name;    ///< of the set
+  std::string system;  ///< whose model
+  bool natural = false;
+  LikelihoodSummary summary;
+  std::string floor;  ///< what the number hangs on
 };
-/// What a linear-Gaussian model without a network reaches on the training data, in nats per frame
-/// of poses in metres, where the model's provenance has it.
-std::optional<double> linearGaussianFloor(const ModelInfo& info);
+/// What a model says of itself; null where it cannot be read.
+using ModelFacts = std::function<std::shared_ptr<const ModelInfo>(const std::string& system)>;
+/// Rows of the sets that likelihoodGroups draws, in that order, over the frames that every model
+/// scores: the largest context decides.
+std::vector<LikelihoodRow> likelihoodRows(const std::vector<MotionGroup>& groups,
+                                          const std::vector<std::string>& systems,
+                                          const NaturalScores& naturalScores,
+                                          const ModelFacts& facts);
 
 /// Median and 5 to 95 % band per group, or every motion as a line of a cloud: a chart for every
-/// skeleton, and where motions end before others a strip that says how many go on.
+/// skeleton, and where motions end before others a strip that says how many go on. A rule shows
+/// what the linear-Gaussian autoregression of each system makes of the natural clips, where it is
+/// known.
 LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
-                          const std::vector<LikelihoodFloor>& floors, bool everyMotion);
+                          const std::vector<LikelihoodRow>& rows, bool everyMotion);
 /// A line at that frame, which stands for its motion.
 void markWorst(LinkedGrid& grid, const std::vector<LikelihoodGroup>& groups,
                const WorstFrame& worst);

@@ -10,8 +10,14 @@
 #include "stats/sample_distance.h"
 
 namespace marey::gui {
-
 namespace {
+
+/// Samples that are cooler than the model say so wherever they are compared.
+std::string labelOf(const MotionGroup& group) {
+  if (!group.recipe || group.recipe->system.temperature == 1.0) return group.name;
+  return fmt::format("{}, temperature {:g}", group.name, group.recipe->system.temperature);
+}
+
 /// The motions of a group that are used and have the joints of most of these.
 void addUsed(MotionSet& set, const MotionGroup& group) {
   std::vector<int> used;
@@ -31,6 +37,7 @@ void addUsed(MotionSet& set, const MotionGroup& group) {
     set.clips.push_back(group.motions[static_cast<size_t>(used[k])].clip);
   }
 }
+
 }  // namespace
 
 std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups) {
@@ -39,7 +46,7 @@ std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups) {
     // A motion that is still being steered grows at every frame: it is compared once it is kept.
     if (!group.complete && !group.recipe && !group.natural()) continue;
     MotionSet set{.group = group.id,
-                  .name = group.name,
+                  .name = labelOf(group),
                   .system = group.system,
                   .natural = group.natural(),
                   .colour = group.colour(),

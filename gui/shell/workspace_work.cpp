@@ -29,14 +29,30 @@ QString faultText(const std::vector<std::string>& faults) {
   return lines.join(u'\n');
 }
 
-/// Empty for a clip that is all context, or of another skeleton than the model's.
-ClipScore scoreOrNone(const MotionModel& model, const Clip& clip) {
-  if (clip.frameCount() <= model.info().context) return {};
+bool fits(const MotionModel& model, const Clip& clip) {
   try {
-    return scoreClip(model, clip);
+    requireSameJoints(model.info(), clip, clip.name);
+    return true;
   } catch (const InputError&) {
-    return {};
+    return false;
   }
+}
+
+/// A clip of another skeleton than the model's leaves the others alone: its score has no name, and
+/// panels count it.
+std::vector<ClipScore> scoresOf(const MotionModel& model, const std::vector<ClipPtr>& clips,
+                                Progress& progress) {
+  std::vector<Clip> fitting;
+  std::vector<size_t> places;
+  for (size_t i = 0; i < clips.size(); ++i) {
+    if (!fits(model, *clips[i])) continue;
+    fitting.push_back(*clips[i]);
+    places.push_back(i);
+  }
+  std::vector<ClipScore> out(clips.size());
+  auto scores = scoreClips(model, fitting, false, progress);
+  for (size_t k = 0; k < places.size(); ++k) out[places[k]] = std::move(scores[k]);
+  return out;
 }
 
 /// Clips of another skeleton than most: they are shown, but nothing can compare them.
@@ -145,13 +161,7 @@ void Workspace::scoreNatural(const std::string& system) {
   m_scoring[stamp] = m_jobs.start(
       Lane::Models, tr("Scoring natural motion under %1").arg(QString::fromStdString(system)),
       [models = m_models, clips, file, scores](Progress& progress) {
-        const auto weights = models->model(file);
-        for (size_t i = 0; i < clips.size(); ++i) {
-          progress.throwIfCancelled();
-          // One clip that the model cannot score leaves the others alone; panels count it.
-          scores->push_back(scoreOrNone(*weights, *clips[i]));
-          progress.report(static_cast<double>(i + 1) / static_cast<double>(clips.size()));
-        }
+        *scores = scoresOf(*models->model(file), clips, progress);
       },
       [this, scores, stamp, version = m_naturalVersion] {
         if (version != m_naturalVersion) return;

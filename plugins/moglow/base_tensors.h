@@ -11,7 +11,9 @@ namespace marey::moglow {
 
 class BaseTensors {
  public:
-  explicit BaseTensors(const TensorFile& file) : m_file(file) {}
+  /// Those stored as "weights/NAME...".
+  BaseTensors(const TensorFile& file, const std::string& name)
+      : m_file(file), m_prefix("weights/" + name + ".") {}
 
   std::vector<double> numbers(const std::string& name) const { return at(name).toDoubles(); }
   double number(const std::string& name) const { return numbers(name).front(); }
@@ -41,11 +43,10 @@ class BaseTensors {
   }
 
  private:
-  const Tensor& at(const std::string& name) const {
-    return m_file.tensors.at("weights/base." + name);
-  }
+  const Tensor& at(const std::string& name) const { return m_file.tensors.at(m_prefix + name); }
 
   const TensorFile& m_file;
+  std::string m_prefix;
 };
 
 }  // namespace marey::moglow

@@ -36,6 +36,7 @@ void check(const Config& c, const JsonReader& reader) {
   checkOneOf<3>(reader, "start", c.start, {"orthogonal", "whitening", "reversal"});
   checkOneOf<3>(reader, "pose_base", c.poseBase, {"none", "linear", "kinematic"});
   if (c.base == "student_t") checkRange(reader, "df", c.df, 1e-3, 1e9);
+  checkRange(reader, "observation_floor_mm", c.observationFloorMm, 0.0, 100.0);
   if (c.poseBase == "none") return;
   checkRange(reader, "base_order", c.baseOrder, 1, c.tau);
   checkRange(reader, "base_ridge", c.baseRidge, 0.0, 1e6);
@@ -100,6 +101,7 @@ Config configFromJson(const Json& value, const std::string& origin) {
   c.dropout = reader.optional("dropout", c.dropout);
   c.start = reader.optional("start", c.start);
   c.poseBase = reader.optional("pose_base", c.poseBase);
+  c.observationFloorMm = reader.optional("observation_floor_mm", c.observationFloorMm);
   c.baseOrder = reader.optional("base_order", std::min(c.baseOrder, c.tau));
   const bool kinematic = c.poseBase == "kinematic";
   c.baseRidge = reader.optional("base_ridge", kinematic ? 0.028 : c.baseRidge);
@@ -135,6 +137,7 @@ Json toJson(const Config& c) {
               {"start", c.start},
               {"pose_base", c.poseBase}};
   if (c.base == "student_t") out["df"] = c.df;
+  if (c.observationFloorMm > 0.0) out["observation_floor_mm"] = c.observationFloorMm;
   if (c.poseBase != "none") {
     out["base_order"] = c.baseOrder;
     out["base_ridge"] = c.baseRidge;

@@ -26,7 +26,9 @@ struct Config {
   /// Ridge strength. linear: relative to the mean square of the inputs; kinematic: as the variance
   /// of noise on every input, in cm^2 (a strong one keeps free-running motion stable).
   double baseRidge = 1e-4;
-  double baseFloor = 1e-4;  ///< smallest innovation eigenvalue, relative to the largest
+  /// Smallest innovation eigenvalue relative to the largest: keeps a fit to noiseless motion
+  /// invertible. No floor of a likelihood where observationFloorMm says one.
+  double baseFloor = 1e-4;
   // The kinematic base alone:
   int regimes = 64;               ///< clusters with a regression and covariance of their own
   double regimeShrinkage = 0.85;  ///< towards the common regression, cm^2 as baseRidge
@@ -34,10 +36,19 @@ struct Config {
   int netFeatures = 80;           ///< principal components of the history that the nets see
   int contacts = 4;               ///< feet and toes of the skeleton
 
+  /// Standard deviation of the noise through which poses are observed, in every direction of pose
+  /// space; 0: none, as published. With it training adds noise to the poses that are to be
+  /// foreseen, and a base is fitted twice: to observed poses, for densities, and to the motion
+  /// itself, for samples, which hold no observation noise of the base.
+  double observationFloorMm = 0.0;
+
   /// The feet's held coordinates stay as the base has them; the flow models the rest of the body
   /// given them. Keeps contacts as crisp in free-running motion as the base's.
   bool feetPassFlow = false;
 
+  bool based() const { return poseBase != "none"; }
+  /// Whether samples go through a base of their own ("motion" beside "base").
+  bool hasMotionBase() const { return based() && observationFloorMm > 0.0; }
   int passedChannels() const { return feetPassFlow ? contacts : 0; }  ///< two per foot
   int conditioning() const {
     if (poseBase == "kinematic")

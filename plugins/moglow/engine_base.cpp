@@ -5,6 +5,7 @@
 #include <exception>
 #include <mutex>
 
+#include "moglow/base_tensors.h"
 #include "moglow/engine_kinematic.h"
 #include "moglow/engine_linear.h"
 #include "nn/team.h"
@@ -66,10 +67,11 @@ void EngineBase::toInnovation(std::span<const RowForesight> seen, const float* p
 }
 
 std::unique_ptr<const EngineBase> makeEngineBase(const Config& config, const BodyFacts& body,
-                                                 const TensorFile& file) {
-  if (config.poseBase == "linear") return std::make_unique<const EngineLinear>(config, file);
+                                                 const TensorFile& file, const std::string& name) {
+  const BaseTensors stored(file, name);
+  if (config.poseBase == "linear") return std::make_unique<const EngineLinear>(config, stored);
   if (config.poseBase == "kinematic")
-    return std::make_unique<const EngineKinematic>(config, body, file);
+    return std::make_unique<const EngineKinematic>(config, body, stored);
   return nullptr;
 }
 

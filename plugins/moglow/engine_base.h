@@ -67,8 +67,9 @@ class EngineBase {
   long m_poseDim, m_historyWidth, m_controlWidth;
 };
 
-/// Reads tensors that are known to be whole ("weights/base.NAME"). Null without a base.
+/// Reads tensors that are known to be whole, stored as `name` ("weights/NAME.TENSOR"). Null without
+/// a base.
 std::unique_ptr<const EngineBase> makeEngineBase(const Config& config, const BodyFacts& body,
-                                                 const TensorFile& file);
+                                                 const TensorFile& file, const std::string& name);
 
 }  // namespace marey::moglow

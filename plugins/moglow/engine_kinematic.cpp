@@ -70,13 +70,12 @@ EngineKinematic::Centres EngineKinematic::centresOf(const std::vector<double>& r
   return out;
 }
 
-EngineKinematic::EngineKinematic(const Config& c, const BodyFacts& body, const TensorFile& file)
+EngineKinematic::EngineKinematic(const Config& c, const BodyFacts& body, const BaseTensors& stored)
     : EngineBase(c),
       m_config(c),
       m_joints(body.parents.size()),
       m_order(feetFirst(body.feet, 3 * body.parents.size())),
-      m_chart(chartOf(body, BaseTensors(file))) {
-  const BaseTensors stored(file);
+      m_chart(chartOf(body, stored)) {
   const auto floors = stored.numbers("foot_floor"), reaches = stored.numbers("reach");
   const size_t feet = body.feet.size();
   for (size_t f = 0; f < feet; ++f) {

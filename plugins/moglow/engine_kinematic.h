@@ -11,7 +11,7 @@ class BaseTensors;
 
 class EngineKinematic : public EngineBase {
  public:
-  EngineKinematic(const Config& config, const BodyFacts& body, const TensorFile& file);
+  EngineKinematic(const Config& config, const BodyFacts& body, const BaseTensors& stored);
 
  private:
   /// Past frames in the present root frame, newest first; cm, rad.

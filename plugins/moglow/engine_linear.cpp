@@ -17,14 +17,13 @@ void store(const std::vector<double>& values, long count, float* out) {
 
 }  // namespace
 
-EngineLinear::EngineLinear(const Config& c, const TensorFile& file)
+EngineLinear::EngineLinear(const Config& c, const BaseTensors& stored)
     : EngineBase(c),
       m_poseDim(c.poseDim),
       m_controlDim(c.controlDim),
       m_tau(c.tau),
       m_order(c.baseOrder),
       m_lookahead(c.lookahead) {
-  const BaseTensors stored(file);
   m_weight = stored.transposed("weight");
   m_whiten = stored.transposed("whiten");
   m_unwhiten = stored.transposed("unwhiten");

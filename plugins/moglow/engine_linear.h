@@ -6,9 +6,11 @@
 
 namespace marey::moglow {
 
+class BaseTensors;
+
 class EngineLinear : public EngineBase {
  public:
-  EngineLinear(const Config& config, const TensorFile& file);
+  EngineLinear(const Config& config, const BaseTensors& stored);
 
  private:
   void foreseeRow(const float* history, const float* control, float* features,

@@ -27,14 +27,16 @@ void checkShape(const char* what, const Matrix& m, long rows, long columns) {
 }  // namespace
 
 EngineModel::EngineModel(ModelInfo info, const Config& config, TensorFile file,
-                         std::unique_ptr<const EngineBase> base, nn::Precision precision,
+                         std::unique_ptr<const EngineBase> base,
+                         std::unique_ptr<const EngineBase> motion, nn::Precision precision,
                          const std::string& origin)
     : m_info(std::move(info)),
       m_config(config),
       m_units(unitsOf(m_info)),
       m_kept(std::move(file)),
       m_flow(config, m_kept, precision, origin),
-      m_base(std::move(base)) {}
+      m_base(std::move(base)),
+      m_motion(std::move(motion)) {}
 
 EngineModel::~EngineModel() = default;
 
@@ -66,8 +68,8 @@ Matrix EngineModel::sampleFrame(RolloutState& state, const Matrix& controlWindow
       {{r.history.data(), width, width}, {r.control.data(), controlWidth(), controlWidth()}}};
   const nn::Inputs seen{r.features.data(), featureWidth(), featureWidth()};
   if (m_base)
-    m_base->foresee(rows, r.history.data(), r.control.data(), r.features.data(), featureWidth(),
-                    r.foreseen);
+    motionBase()->foresee(rows, r.history.data(), r.control.data(), r.features.data(),
+                          featureWidth(), r.foreseen);
   for (long b = 0; b < rows; ++b) {
     const float* z = latent.row(b).data();
     std::copy(z + passed, z + d, r.flow.values.data() + b * stride);
@@ -82,7 +84,7 @@ Matrix EngineModel::sampleFrame(RolloutState& state, const Matrix& controlWindow
               out.row(b).data() + passed);
   }
   if (m_base) {
-    m_base->toPose(r.foreseen, out.data(), r.pose.data());
+    motionBase()->toPose(r.foreseen, out.data(), r.pose.data());
     std::copy(r.pose.data(), r.pose.data() + rows * d, out.data());
   }
   for (long b = 0; b < rows; ++b) {

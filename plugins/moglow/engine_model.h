@@ -13,10 +13,11 @@ namespace marey::moglow {
 class EngineModel : public MotionModel {
  public:
   /// `file` holds the checked weights; the flow's large ones are kept packed only. `base`: null
-  /// without one. Throws InputError for a singular linear layer.
+  /// without one; `motion`: that of samples, null where it is `base`. Throws InputError for a
+  /// singular linear layer.
   EngineModel(ModelInfo info, const Config& config, TensorFile file,
-              std::unique_ptr<const EngineBase> base, nn::Precision precision,
-              const std::string& origin);
+              std::unique_ptr<const EngineBase> base, std::unique_ptr<const EngineBase> motion,
+              nn::Precision precision, const std::string& origin);
   ~EngineModel() override;
 
   const ModelInfo& info() const override { return m_info; }
@@ -41,13 +42,15 @@ class EngineModel : public MotionModel {
   }
   /// Columns of what the base and the flow's passed channels give to the nets.
   long featureWidth() const { return m_base ? m_config.conditioning() : 0; }
+  const EngineBase* motionBase() const { return m_motion ? m_motion.get() : m_base.get(); }
 
   ModelInfo m_info;
   Config m_config;
   Standardiser m_units;  ///< zeros and ones where the model has none
   TensorFile m_kept;     ///< everything but what is packed
   FlowEngine m_flow;
-  std::unique_ptr<const EngineBase> m_base;
+  std::unique_ptr<const EngineBase> m_base;    ///< of densities
+  std::unique_ptr<const EngineBase> m_motion;  ///< of samples; null where that is m_base
 };
 
 }  // namespace marey::moglow

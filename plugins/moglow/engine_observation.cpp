@@ -49,6 +49,7 @@ class EngineModel::Observation {
     size_t index;  ///< in the caller's order
     long frames;
     nn::AlignedFloats poses, controls;  ///< standardised; the history before the poses
+    nn::AlignedFloats targets;          ///< standardised; empty where the poses are scored
   };
   void addLane(Rollout& rollout, const ObservedSequence& sequence, size_t index);
   /// Frames begin .. of every sequence that has them.
@@ -81,14 +82,24 @@ void EngineModel::Observation::addLane(Rollout& rollout, const ObservedSequence&
                            c.tau, c.lookahead, c.controlDim),
                "{} rollouts, {} x {} and {} x {}", rollout.flow.rows, poses.rows(), poses.cols(),
                controls.rows(), controls.cols());
+  if (sequence.targets != nullptr &&
+      (sequence.targets->rows() != poses.rows() || sequence.targets->cols() != poses.cols()))
+    throwInput({.path = "observed sequence"},
+               fmt::format("targets of {} x {}", poses.rows(), poses.cols()), "{} x {}",
+               sequence.targets->rows(), sequence.targets->cols());
   const long history = m_model.historyWidth();
-  Lane lane{index, poses.rows(), nn::AlignedFloats(static_cast<size_t>(history + poses.size())),
-            nn::AlignedFloats(static_cast<size_t>(controls.size()))};
+  Lane lane{
+      index, poses.rows(), nn::AlignedFloats(static_cast<size_t>(history + poses.size())),
+      nn::AlignedFloats(static_cast<size_t>(controls.size())),
+      nn::AlignedFloats(sequence.targets ? static_cast<size_t>(sequence.targets->size()) : 0)};
   std::copy(rollout.history.data(), rollout.history.data() + history, lane.poses.data());
   standardise(poses.data(), poses.size(), units.poseMean, units.poseStd,
               lane.poses.data() + history);
   standardise(controls.data(), controls.size(), units.controlMean, units.controlStd,
               lane.controls.data());
+  if (sequence.targets != nullptr)
+    standardise(sequence.targets->data(), sequence.targets->size(), units.poseMean, units.poseStd,
+                lane.targets.data());
   m_scores[index].latent.resize(poses.rows(), poses.cols());
   m_scores[index].loglikNats.resize(static_cast<size_t>(poses.rows()));
   m_rollouts.push_back(&rollout);
@@ -125,7 +136,9 @@ void EngineModel::Observation::gather(const nn::FrameRows& frames, long begin) {
       const float *pose = lane.poses.data() + (begin + t) * d,
                   *window = lane.controls.data() + (begin + t) * c;
       std::copy(pose, pose + history, m_history.data() + row * history);
-      std::copy(pose + history, pose + history + d, m_poses.data() + row * d);
+      const float* target =
+          lane.targets.size() > 0 ? lane.targets.data() + (begin + t) * d : pose + history;
+      std::copy(target, target + d, m_poses.data() + row * d);
       std::copy(window, window + control, m_control.data() + row * control);
     }
 }

@@ -10,6 +10,9 @@
 namespace marey::moglow {
 namespace {
 
+/// Of models that are trained from now on: as finely as anything about a skeleton is known.
+constexpr double kObservationFloorMm = 0.5;
+
 int64_t trainableParameters(const Config& c) {
   // In closed form: a paper-size network need not be built to be counted.
   const int64_t d = c.poseDim - c.passedChannels(), h = c.hidden,
@@ -65,11 +68,18 @@ std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
                                             type);
   }
   checkFlow(config, file, origin);
-  auto base = loadBase(config, body, file, origin);
+  auto base = loadBase(config, body, file, "base", origin);
+  auto motion = config.hasMotionBase() ? loadBase(config, body, file, "motion", origin) : nullptr;
   const auto precision = options.weights == WeightPrecision::BFloat16 ? nn::Precision::BFloat16
                                                                       : nn::Precision::Float32;
   return std::make_unique<EngineModel>(completed(std::move(info), config), config, std::move(file),
-                                       std::move(base), precision, origin);
+                                       std::move(base), std::move(motion), precision, origin);
+}
+
+/// Whether a configuration says its observation floor, be it zero.
+bool statesFloor(const Json& json) {
+  const Json& model = json.is_object() && json.contains("model") ? json.at("model") : json;
+  return model.is_object() && model.contains("observation_floor_mm");
 }
 
 Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const TraineeData& data,
@@ -77,6 +87,7 @@ Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const Tr
   Config config = configFromJson(modelConfig, origin);
   config.poseDim = data.poseDim;
   config.controlDim = data.controlDim;
+  if (!statesFloor(modelConfig)) config.observationFloorMm = kObservationFloorMm;
   const BodyFacts body = bodyFacts(data.skeleton.get(), data.standardiser);
   config.contacts = 2 * static_cast<int>(body.feet.size());
   return {std::make_shared<Net>(config, body, seed), toJson(config)};

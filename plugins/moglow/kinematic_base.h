@@ -25,7 +25,7 @@ class KinematicBase : public PoseBase {
   Foresight foresee(const BaseInput& input) const override;
   Innovation toInnovation(const torch::Tensor& pose, const Foresight& foresight) const override;
   torch::Tensor toPose(const torch::Tensor& innovation, const Foresight& foresight) const override;
-  void fit(const torch::Tensor& poses, const BaseInput& input) override;
+  void fit(const torch::Tensor& poses, const BaseInput& input, const torch::Tensor& noise) override;
 
   /// Past frames of movement, newest first, in the present root frame.
   struct Past {
@@ -59,9 +59,10 @@ class KinematicBase : public PoseBase {
   void fitForeseen(const torch::Tensor& pose, const Past& past);
   void fitHold(const torch::Tensor& pose, const Past& past);
   struct Footing;
-  void fitGate(const Footing& footing);
+  /// `floor`: smallest standard deviation of a joint's coordinate, cm; 0: none.
+  void fitGate(const Footing& footing, double floor);
   void fitLimits(const torch::Tensor& pose, const Past& past);
-  void fitLegs(const torch::Tensor& pose, const Footing& footing);
+  void fitLegs(const torch::Tensor& pose, const Footing& footing, double floor);
   void fitRegimes(const torch::Tensor& local, const Past& past);
   void fitWhitening(const torch::Tensor& residual, const torch::Tensor& regime);
   void fitNetFeatures(const Past& past);

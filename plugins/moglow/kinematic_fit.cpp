@@ -1,5 +1,8 @@
 // The fit of the kinematic base: closed forms and k-means, in float64 where sums are long.
 #include <algorithm>
+#include <numbers>
+
+#include <ATen/CPUGeneratorImpl.h>
 
 #include "base/random.h"
 #include "moglow/kinematic_base.h"
@@ -17,6 +20,7 @@ constexpr double kLowest = 0.005;    ///< share of frames in which a foot is low
 constexpr double kSlowest = 0.1;    ///< share of frames in which a foot is slower than slow by half
 constexpr double kReached = 0.995;  ///< share of frames in which a leg reaches less far
 constexpr double kSmallestStep = 0.02;  ///< between radial quantiles, in units of the scale
+constexpr uint64_t kNoiseSeed = 20;     ///< of the noise through which poses are seen
 constexpr int64_t kFewestMoves = 60;    ///< of a cluster of its own gate
 constexpr double kPriorFrames = 200.0;  ///< weight of the common covariance in a regime's
 
@@ -82,15 +86,26 @@ struct FittedGate {
   torch::Tensor radii;  ///< [kGateKnots], in units of the scale
 };
 
+/// Steps between radial quantiles, in units of the scale, with which no direction of a gate is
+/// narrower than noise of `floor` cm on every coordinate makes it. A foot is seen from where it
+/// stood as far as it is held, and from its knee, which is as noisy, as far as it is not. Against
+/// the way of its shift a gate is narrower by 1 - |skew|.
+double smallestStep(const FootMoves& moves, double hold, double skew, double floor) {
+  const double noise = floor * std::sqrt(1.0 + (1.0 - hold) * (1.0 - hold));
+  const double scale = moves.scale.min().item<double>();
+  return std::max(kSmallestStep, kGateStep * noise / ((1.0 - std::abs(skew)) * scale));
+}
+
 /// The gate about given centres under which the movements are likeliest; `far` as in
-/// gateQuantiles.
-FittedGate likeliestGate(const FootMoves& moves, double hold, double far) {
+/// gateQuantiles, `floor` as in smallestStep.
+FittedGate likeliestGate(const FootMoves& moves, double hold, double far, double floor) {
   FittedGate best;
   double most = -1e30;
   const auto offset = offsets(moves, hold);
   for (const double skew : {-0.8, -0.5, -0.2, 0.0, 0.2, 0.5, 0.8}) {
     const auto shift = gateShift(torch::full_like(moves.scale, skew), moves.way);
-    const auto radii = gateQuantiles(gateDistance(offset, shift) / moves.scale, kSmallestStep, far);
+    const auto radii = gateQuantiles(gateDistance(offset, shift) / moves.scale,
+                                     smallestStep(moves, hold, skew, floor), far);
     const auto gated = throughGate({radii.unsqueeze(0) * moves.scale.unsqueeze(1), shift}, offset);
     const double nats = (gated.logDet - 0.5 * gated.value.square().sum(-1)).mean().item<double>();
     if (nats <= most) continue;
@@ -191,12 +206,12 @@ struct KinematicBase::Footing {
   torch::Tensor scales;  ///< [N, feet]
 };
 
-void KinematicBase::fitGate(const Footing& f) {
+void KinematicBase::fitGate(const Footing& f, double floor) {
   const FootMoves moves{footByFoot(f.places.now), footByFoot(f.places.before),
                         footByFoot(f.places.way), footByFoot(f.gate.foreseen),
                         footByFoot(f.scales)};
   const auto cluster = footByFoot(f.clusters);
-  const FittedGate common = likeliestGate(moves, 0.5, 0.0);
+  const FittedGate common = likeliestGate(moves, 0.5, 0.0, floor);
   // What feet do at large is what any foot may do once in a while.
   const double far = common.radii[kGateKnots - 2].item<double>();
   for (int64_t k = 0; k < m_config.footClusters; ++k) {
@@ -204,7 +219,7 @@ void KinematicBase::fitGate(const Footing& f) {
     const FittedGate fitted =
         rows.size(0) < kFewestMoves
             ? common
-            : likeliestGate(moves.at(rows), m_footHold[k].item<double>(), far);
+            : likeliestGate(moves.at(rows), m_footHold[k].item<double>(), far, floor);
     m_footSkew[k] = fitted.skew;
     m_footRadii[k].copy_(fitted.radii);
   }
@@ -212,7 +227,7 @@ void KinematicBase::fitGate(const Footing& f) {
 
 /// How far knees leave the bend of their legs, and feet the lengths of their bones: with the
 /// distance that the foot goes.
-void KinematicBase::fitLegs(const torch::Tensor& pose, const Footing& f) {
+void KinematicBase::fitLegs(const torch::Tensor& pose, const Footing& f, double floor) {
   const auto& clusters = f.clusters;
   const auto distance = gateDistance(
       f.places.now.narrow(-1, 0, 2) - gateCentre(f.foreseen.hold, f.gate.foreseen, f.places.before),
@@ -231,10 +246,13 @@ void KinematicBase::fitLegs(const torch::Tensor& pose, const Footing& f) {
     const auto rows = clusters.eq(k);
     if (!rows.any().item<bool>()) continue;
     const auto s = distance.masked_select(rows);
-    const auto slack = kSlack + (1.0 - firmness(m_footHold[k])) * s.median();
+    const auto slack = std::max(kSlack, floor) + (1.0 - firmness(m_footHold[k])) * s.median();
+    // Bones end in two joints, each as noisy as the other.
+    const double steadiest =
+        std::max(kSteadiest, std::numbers::sqrt2 * floor / slack.item<double>());
     const auto slope = [&](const torch::Tensor& values) {
       const auto relative = values.masked_select(rows) / (s + slack);
-      return relative.square().mean().sqrt().clamp(kSteadiest, 4.0);
+      return relative.square().mean().sqrt().clamp(steadiest, std::max(4.0, steadiest));
     };
     m_slack[k] = slack;
     m_kneeSlope[k] = slope(offset);
@@ -326,14 +344,24 @@ void KinematicBase::fitNetFeatures(const Past& past) {
   m_controlScale.copy_(deviation.narrow(0, width - speeds - controls, controls));
 }
 
-void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input) {
+void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input,
+                        const torch::Tensor& noise) {
   const torch::NoGradGuard guard;
-  const auto pose = toCentimetres(poses);
+  const auto motion = toCentimetres(poses);
   const Past past = pastOf(input);
-  fitChart(pose);
-  fitLimits(pose, past);
-  fitForeseen(pose, past);
-  fitHold(pose, past);
+  fitChart(motion);
+  fitLimits(motion, past);
+  fitForeseen(motion, past);
+  fitHold(motion, past);
+  // The body and what holds its feet are those of the motion; how far it strays, of what is seen.
+  auto pose = motion;
+  double floor = 0.0;
+  if (noise.defined()) {
+    auto generator = at::detail::createCPUGenerator(kNoiseSeed);
+    const auto drawn = torch::randn(poses.sizes(), generator, torch::kFloat32).to(poses.device());
+    pose = toCentimetres(poses + drawn * noise);
+    floor = 100.0 * (noise * m_poseStd).min().item<double>();
+  }
   const auto clusters = footClusters(past);
   const Foreseen foreseen = foreseenOn(past, clusters);
   fitRegimes(chartCoordinates(chart(), pose, foreseen).flatten(1), past);
@@ -341,8 +369,8 @@ void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input) {
   const auto predicted = predictedChart(richRegressors(past), regime);
   const Footing footing{clusters, foreseen, gateOf(past, clusters, predicted),
                         footPlaces(chart(), pose, foreseen), footScales(past)};
-  fitGate(footing);
-  fitLegs(pose, footing);
+  fitGate(footing, floor);
+  fitLegs(pose, footing, floor);
   const auto local =
       toChart(chart(), pose, foreseen, gateOf(past, clusters, predicted)).value.flatten(1);
   // The few frames in which feet leave would otherwise set the spread of all.

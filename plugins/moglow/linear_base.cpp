@@ -46,7 +46,8 @@ torch::Tensor LinearBase::toPose(const torch::Tensor& innovation, const Foresigh
   return innovation.matmul(m_unwhiten.t()) + f.parts[0];
 }
 
-void LinearBase::fit(const torch::Tensor& poses, const BaseInput& input) {
+void LinearBase::fit(const torch::Tensor& poses, const BaseInput& input,
+                     const torch::Tensor& noise) {
   const torch::NoGradGuard guard;
   const auto n = poses.size(0);
   const auto y = poses.to(torch::kFloat64),
@@ -59,7 +60,10 @@ void LinearBase::fit(const torch::Tensor& poses, const BaseInput& input) {
   const auto penalty = m_ridge * gram.diagonal().mean() * torch::eye(x.size(1), gram.options());
   const auto weight = torch::linalg_solve(gram + penalty, x.t().matmul(y - yMean) / n).t();
   const auto residual = y - yMean - x.matmul(weight.t());
-  const auto w = nn::whitening(residual.t().matmul(residual) / n, m_floor);
+  const auto covariance = residual.t().matmul(residual) / n;
+  const auto w = noise.defined()
+                     ? nn::whitening(covariance + noise.to(torch::kFloat64).square().diag(), 0.0)
+                     : nn::whitening(covariance, m_floor);
   m_weight.copy_(weight);
   m_bias.copy_(yMean - weight.matmul(xMean));
   m_whiten.copy_(w);

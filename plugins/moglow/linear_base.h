@@ -2,7 +2,9 @@
 //
 //   e_t = W (x_t - A [x_{t-1}, ..., x_{t-order}] - B [c_t, c_{t-1}] - b)
 //
-// A, B, b are fitted by ridge regression, W whitens the innovation (eigenvalues floored). The
+// A, B, b are fitted by ridge regression, W whitens the innovation: its covariance plus that of the
+// observation noise, so that no direction is narrower than that; without noise, with a floor
+// relative to the widest direction. The
 // nets see the PCA-whitened history, with frame dropout, and the control.
 #pragma once
 
@@ -18,7 +20,7 @@ class LinearBase : public PoseBase {
   Foresight foresee(const BaseInput& input) const override;
   Innovation toInnovation(const torch::Tensor& pose, const Foresight& foresight) const override;
   torch::Tensor toPose(const torch::Tensor& innovation, const Foresight& foresight) const override;
-  void fit(const torch::Tensor& poses, const BaseInput& input) override;
+  void fit(const torch::Tensor& poses, const BaseInput& input, const torch::Tensor& noise) override;
 
  private:
   /// [N, order * D + 2 C]: newest pose first, then the present and the last control.

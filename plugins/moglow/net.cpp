@@ -10,6 +10,7 @@ namespace {
 
 /// Frames that data-dependent starts look at: enough for stable moments, small in memory.
 constexpr int64_t kStartFrames = 4096;
+constexpr uint64_t kNoiseSeed = 21;  ///< of the observation noise of those frames
 
 nn::FlowSpec flowSpec(const Config& c) {
   return {.channels = c.poseDim - c.passedChannels(),
@@ -48,6 +49,7 @@ Net::Net(const Config& config, const BodyFacts& body, uint64_t seed) : m_config(
   m_flow = register_module("flow", std::make_shared<nn::Flow>(flowSpec(config), generator));
   m_base = makePoseBase(config, body);
   if (m_base) register_module("base", m_base);
+  if (config.hasMotionBase()) m_motion = register_module("motion", makePoseBase(config, body));
 }
 
 Net::Context Net::contextOf(const torch::Tensor& poses, const torch::Tensor& controls) const {
@@ -104,12 +106,22 @@ torch::Tensor Net::seenBy(const Foresight& foresight, const torch::Tensor& passe
 
 torch::Tensor Net::toData(const torch::Tensor& z, const Context& context,
                           nn::FlowState& state) const {
-  if (!m_base) return m_flow->toData(z, plainConditioning(context), state);
+  return toDataBy(m_base.get(), z, context, state);
+}
+
+torch::Tensor Net::toMotion(const torch::Tensor& z, const Context& context,
+                            nn::FlowState& state) const {
+  return toDataBy(m_motion ? m_motion.get() : m_base.get(), z, context, state);
+}
+
+torch::Tensor Net::toDataBy(const PoseBase* base, const torch::Tensor& z, const Context& context,
+                            nn::FlowState& state) const {
+  if (base == nullptr) return m_flow->toData(z, plainConditioning(context), state);
   const int64_t batch = z.size(0), frames = z.size(1);
-  const Foresight foresight = m_base->foresee(flattened(context));
+  const Foresight foresight = base->foresee(flattened(context));
   const auto [passed, rest] = split(z);
   const auto e = torch::cat({passed, m_flow->toData(rest, seenBy(foresight, passed), state)}, -1);
-  return m_base->toPose(e.flatten(0, 1), foresight).view({batch, frames, -1});
+  return base->toPose(e.flatten(0, 1), foresight).view({batch, frames, -1});
 }
 
 torch::Tensor Net::drawDropout(const TrainingBatch& batch, at::Generator& generator) const {
@@ -131,7 +143,10 @@ torch::Tensor Net::logLikelihood(const TrainingBatch& batch) {
     nn::FlowState state;
     return m_flow->toLatent(x, seen.values, state);
   };
-  const auto latent = toLatentBy(pass, poses.narrow(1, m_config.tau, frames), context);
+  auto observed = poses.narrow(1, m_config.tau, frames);
+  // Only what is to be foreseen is noisy: the history is that of the motion.
+  if (batch.noise.defined()) observed = observed + batch.noise.narrow(1, m_config.tau, frames);
+  const auto latent = toLatentBy(pass, observed, context);
   return nn::baseLogDensity(latent.value, m_config.degreesOfFreedom()) + latent.logDet;
 }
 
@@ -144,45 +159,47 @@ Net::Context Net::contextAt(const TrainingFrames& frames, const torch::Tensor& r
   return {torch::cat(poses, 1).unsqueeze(1), torch::cat(controls, 1).unsqueeze(1), {}};
 }
 
+namespace {
+
+/// A fixed, even choice of at most `most` usable frames.
+torch::Tensor evenRows(const TrainingFrames& frames, int64_t most) {
+  const int64_t all = frames.usable.size(0), count = std::min(most, all);
+  return frames.usable.index_select(0, (torch::arange(count, torch::kFloat64) * all / count)
+                                           .to(torch::kInt64)
+                                           .to(frames.usable.device()));
+}
+
+/// Poses of some frames as they are observed.
+torch::Tensor observedPoses(const TrainingFrames& frames, const torch::Tensor& rows) {
+  const auto poses = frames.pose.index_select(0, rows);
+  if (!frames.noise.defined()) return poses;
+  auto generator = at::detail::createCPUGenerator(kNoiseSeed);
+  return poses +
+         frames.noise * torch::randn(poses.sizes(), generator, torch::kFloat32).to(poses.device());
+}
+
+}  // namespace
+
+void Net::fitBases(const TrainingFrames& frames, Json& facts) {
+  const auto input = flattened(contextAt(frames, frames.usable));
+  const auto poses = frames.pose.index_select(0, frames.usable);
+  m_base->fit(poses, input, frames.noise);
+  if (m_motion) m_motion->fit(poses, input, {});
+  const auto rows = evenRows(frames, 8 * kStartFrames);
+  const auto foresight = m_base->foresee(flattened(contextAt(frames, rows)));
+  const auto e = m_base->toInnovation(observedPoses(frames, rows), foresight);
+  facts["base_nats_per_frame"] =
+      (nn::baseLogDensity(e.value, 0.0) + e.logDet).mean().item<double>();
+}
+
 Json Net::initialise(const TrainingFrames& frames) {
   const torch::NoGradGuard guard;
   Json facts = Json::object();
-  // The floor that every flow has to beat is stated with every model, whatever its base.
-  Config floorConfig = m_config;
-  floorConfig.baseOrder = std::min(3, m_config.tau);
-  floorConfig.baseRidge = 1e-4;
-  floorConfig.baseFloor = 1e-4;
-  const auto fitted = [&](PoseBase& base) {
-    const auto context = contextAt(frames, frames.usable);
-    const auto poses = frames.pose.index_select(0, frames.usable);
-    base.fit(poses, flattened(context));
-  };
-  const auto meanNats = [&](PoseBase& base) {
-    const int64_t count = std::min<int64_t>(8 * kStartFrames, frames.usable.size(0));
-    const auto rows = frames.usable.index_select(
-        0, (torch::arange(count, torch::kFloat64) * frames.usable.size(0) / count)
-               .to(torch::kInt64)
-               .to(frames.usable.device()));
-    const auto foresight = base.foresee(flattened(contextAt(frames, rows)));
-    const auto e = base.toInnovation(frames.pose.index_select(0, rows), foresight);
-    return (nn::baseLogDensity(e.value, 0.0) + e.logDet).mean().item<double>();
-  };
-  LinearBase floor(floorConfig);
-  floor.to(frames.pose.device());
-  fitted(floor);
-  facts["linear_gaussian_nats_per_frame"] = meanNats(floor);
-  if (m_base) {
-    fitted(*m_base);
-    facts["base_nats_per_frame"] = meanNats(*m_base);
-  }
-  // A fixed, even choice of frames, each as a sequence of one.
-  const int64_t count = std::min<int64_t>(kStartFrames, frames.usable.size(0));
-  const auto rows = frames.usable.index_select(
-      0, (torch::arange(count, torch::kFloat64) * frames.usable.size(0) / count)
-             .to(torch::kInt64)
-             .to(frames.usable.device()));
+  if (m_base) fitBases(frames, facts);
+  // Each frame as a sequence of one.
+  const auto rows = evenRows(frames, kStartFrames);
   const auto context = contextAt(frames, rows);
-  const auto x = frames.pose.index_select(0, rows);
+  const auto x = observedPoses(frames, rows);
   if (!m_base) {
     m_flow->initialise(x.unsqueeze(1), plainConditioning(context), startOf(m_config.start));
     return facts;
@@ -191,6 +208,21 @@ Json Net::initialise(const TrainingFrames& frames) {
   const auto [passed, rest] = split(m_base->toInnovation(x, foresight).value.unsqueeze(1));
   m_flow->initialise(rest, seenBy(foresight, passed), startOf(m_config.start));
   return facts;
+}
+
+torch::Tensor Net::poseDerivatives(const TrainingFrames& frames, int64_t count) {
+  const auto rows = evenRows(frames, count);
+  const auto context = contextAt(frames, rows);
+  auto generator = at::detail::createCPUGenerator(kNoiseSeed);
+  auto z = torch::randn({rows.size(0), 1, m_config.poseDim}, generator, torch::kFloat32)
+               .to(frames.pose.device())
+               .requires_grad_(true);
+  nn::FlowState state;
+  const auto x = toData(z, context, state).squeeze(1);
+  std::vector<torch::Tensor> out;
+  for (int64_t d = 0; d < m_config.poseDim; ++d)
+    out.push_back(torch::autograd::grad({x.select(1, d).sum()}, {z}, {}, true)[0].squeeze(1));
+  return torch::stack(out, 1);
 }
 
 }  // namespace marey::moglow

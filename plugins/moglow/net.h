@@ -24,6 +24,8 @@ class Net : public TrainableModel {
   torch::Tensor drawDropout(const TrainingBatch& batch, at::Generator& generator) const override;
   torch::Tensor logLikelihood(const TrainingBatch& batch) override;
   Json initialise(const TrainingFrames& frames) override;
+  double observationFloorM() const override { return 1e-3 * m_config.observationFloorMm; }
+  torch::Tensor poseDerivatives(const TrainingFrames& frames, int64_t count) override;
 
   /// Conditioning of a run of frames.
   struct Context {
@@ -36,7 +38,11 @@ class Net : public TrainableModel {
   Context contextOf(const torch::Tensor& poses, const torch::Tensor& controls) const;
   nn::Transformed toLatent(const torch::Tensor& x, const Context& context,
                            nn::FlowState& state) const;
+  /// The exact inverse of toLatent.
   torch::Tensor toData(const torch::Tensor& z, const Context& context, nn::FlowState& state) const;
+  /// The same without the observation noise of a base: what samples are.
+  torch::Tensor toMotion(const torch::Tensor& z, const Context& context,
+                         nn::FlowState& state) const;
 
   const Config& config() const { return m_config; }
 
@@ -46,16 +52,20 @@ class Net : public TrainableModel {
   /// To latent, with the flow run by `pass`.
   nn::Transformed toLatentBy(const FlowPass& pass, const torch::Tensor& x,
                              const Context& context) const;
+  torch::Tensor toDataBy(const PoseBase* base, const torch::Tensor& z, const Context& context,
+                         nn::FlowState& state) const;
   torch::Tensor plainConditioning(const Context& context) const;
   /// Innovations [B, T, D] as the channels that pass the flow by and those that it models.
   std::pair<torch::Tensor, torch::Tensor> split(const torch::Tensor& innovation) const;
   /// What the flow's nets see: [B, T, F], the passed channels included.
   torch::Tensor seenBy(const Foresight& foresight, const torch::Tensor& passed) const;
+  void fitBases(const TrainingFrames& frames, Json& facts);
   Context contextAt(const TrainingFrames& frames, const torch::Tensor& rows) const;
 
   Config m_config;
   std::shared_ptr<nn::Flow> m_flow;
-  std::shared_ptr<PoseBase> m_base;  ///< null without a base
+  std::shared_ptr<PoseBase> m_base;    ///< null without a base
+  std::shared_ptr<PoseBase> m_motion;  ///< that of samples; null where m_base is
 };
 
 }  // namespace marey::moglow

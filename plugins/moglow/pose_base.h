@@ -35,8 +35,10 @@ class PoseBase : public torch::nn::Module {
   virtual Innovation toInnovation(const torch::Tensor& pose, const Foresight& foresight) const = 0;
   virtual torch::Tensor toPose(const torch::Tensor& innovation,
                                const Foresight& foresight) const = 0;
-  /// Deterministic fit to standardised poses [N, D] with their inputs.
-  virtual void fit(const torch::Tensor& poses, const BaseInput& input) = 0;
+  /// Deterministic fit to standardised poses [N, D] with their inputs, seen through noise of
+  /// standard deviations `noise` [D], standardised too; undefined: none.
+  virtual void fit(const torch::Tensor& poses, const BaseInput& input,
+                   const torch::Tensor& noise) = 0;
 };
 
 /// Null for configurations without a base. Throws InputError when the body does not suit it.

@@ -61,19 +61,38 @@ Matrix ReferenceModel::sampleFrame(RolloutState& state, const Matrix& controlWin
   const auto control =
       (toTensor(controlWindow).view({batch, -1, m_info.controlDim}) - m_controlMean) / m_controlStd;
   const Net::Context context{rollout.history.view({batch, 1, -1}), control.reshape({batch, 1, -1})};
-  const auto x = m_net->toData(toTensor(latent).unsqueeze(1), context, rollout.flow);
+  const auto x = m_net->toMotion(toTensor(latent).unsqueeze(1), context, rollout.flow);
   rollout.history = torch::cat({rollout.history.narrow(1, 1, m_info.context - 1), x}, 1);
   return toMatrix(x.squeeze(1) * m_poseStd + m_poseMean);
 }
 
+std::vector<SequenceScore> ReferenceModel::observeMany(std::span<RolloutState> states,
+                                                       std::span<const ObservedSequence> sequences,
+                                                       const std::function<void()>& between) const {
+  std::vector<SequenceScore> out;
+  for (size_t i = 0; i < sequences.size(); ++i) {
+    between();
+    const ObservedSequence& s = sequences[i];
+    out.push_back(
+        observeTargets(states[i], *s.poses, *s.controls, s.targets ? *s.targets : *s.poses));
+  }
+  return out;
+}
+
 SequenceScore ReferenceModel::observe(RolloutState& state, const Matrix& poses,
                                       const Matrix& controls) const {
+  return observeTargets(state, poses, controls, poses);
+}
+
+SequenceScore ReferenceModel::observeTargets(RolloutState& state, const Matrix& poses,
+                                             const Matrix& controls, const Matrix& targets) const {
   const c10::InferenceMode guard;
   auto& rollout = std::any_cast<Rollout&>(state.value);
   const auto x = (toTensor(poses).unsqueeze(0) - m_poseMean) / m_poseStd;
   const auto control = (toTensor(controls).unsqueeze(0) - m_controlMean) / m_controlStd;
   const auto all = torch::cat({rollout.history, x}, 1);
-  const auto latent = m_net->toLatent(x, m_net->contextOf(all, control), rollout.flow);
+  const auto scored = (toTensor(targets).unsqueeze(0) - m_poseMean) / m_poseStd;
+  const auto latent = m_net->toLatent(scored, m_net->contextOf(all, control), rollout.flow);
   rollout.history = all.narrow(1, all.size(1) - m_info.context, m_info.context);
   const auto density = (nn::baseLogDensity(latent.value, baseDegreesOfFreedom()) + latent.logDet)
                            .to(torch::kFloat64)

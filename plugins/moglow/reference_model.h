@@ -17,6 +17,9 @@ class ReferenceModel : public MotionModel {
   RolloutState start(int batch, const Matrix& history) const override;
   Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,
                      const Matrix& latent) const override;
+  std::vector<SequenceScore> observeMany(std::span<RolloutState> states,
+                                         std::span<const ObservedSequence> sequences,
+                                         const std::function<void()>& between) const override;
   SequenceScore observe(RolloutState& state, const Matrix& poses,
                         const Matrix& controls) const override;
   double baseDegreesOfFreedom() const override { return m_net->config().degreesOfFreedom(); }
@@ -24,7 +27,9 @@ class ReferenceModel : public MotionModel {
 
  private:
   torch::Tensor toTensor(const Matrix& m) const;
-
+  /// `targets` are scored, after the history that `poses` are.
+  SequenceScore observeTargets(RolloutState& state, const Matrix& poses, const Matrix& controls,
+                               const Matrix& targets) const;
   ModelInfo m_info;
   std::shared_ptr<Net> m_net;
   torch::ScalarType m_type;

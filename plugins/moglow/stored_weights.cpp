@@ -11,7 +11,7 @@
 namespace marey::moglow {
 namespace {
 
-const std::string kStored = "weights/", kBase = "weights/base.";
+const std::string kStored = "weights/";
 
 bool isFinite(const Tensor& tensor) {
   const auto values = tensor.toFloats();
@@ -20,7 +20,9 @@ bool isFinite(const Tensor& tensor) {
 
 /// Tensors of the base are named under it.
 struct BaseHolder : torch::nn::Module {
-  explicit BaseHolder(const std::shared_ptr<PoseBase>& base) { register_module("base", base); }
+  BaseHolder(const std::string& name, const std::shared_ptr<PoseBase>& base) {
+    register_module(name, base);
+  }
 };
 
 }  // namespace
@@ -33,24 +35,28 @@ void checkFlow(const Config& config, const TensorFile& file, const std::string& 
       throw InputError({.path = origin, .item = "tensor '" + name + "'"}, "finite weights",
                        "NaN or infinity");
   }
-  const bool based = config.poseBase != "none";
+  const auto ofBase = [&](const std::string& key) {
+    return (config.based() && key.starts_with(kStored + "base.")) ||
+           (config.hasMotionBase() && key.starts_with(kStored + "motion."));
+  };
   for (const auto& [key, tensor] : file.tensors)
-    if (key.starts_with(kStored) && !expected.contains(key) && !(based && key.starts_with(kBase)))
+    if (key.starts_with(kStored) && !expected.contains(key) && !ofBase(key))
       throw InputError({.path = origin, .item = "tensor '" + key.substr(kStored.size()) + "'"},
                        "only tensors that the model has", "an extra one");
 }
 
 std::unique_ptr<const EngineBase> loadBase(const Config& config, const BodyFacts& body,
-                                           const TensorFile& file, const std::string& origin) {
+                                           const TensorFile& file, const std::string& name,
+                                           const std::string& origin) {
   const auto plain = makePoseBase(config, body);
   if (!plain) return nullptr;
   // The plain path's names and shapes are those that have to be there.
   TensorFile own;
   for (const auto& [key, tensor] : file.tensors)
-    if (key.starts_with(kBase)) own.tensors[key] = tensor;
-  BaseHolder holder(plain);
+    if (key.starts_with(kStored + name + ".")) own.tensors[key] = tensor;
+  BaseHolder holder(name, plain);
   loadWeights(holder, own, origin);
-  return makeEngineBase(config, body, file);
+  return makeEngineBase(config, body, file, name);
 }
 
 }  // namespace marey::moglow

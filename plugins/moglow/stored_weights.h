@@ -15,8 +15,10 @@ namespace marey::moglow {
 /// finite, or when there is one that the model does not have.
 void checkFlow(const Config& config, const TensorFile& file, const std::string& origin);
 
-/// The engine's base with its stored tensors; null for configurations without one. As strict.
+/// The engine's base with the tensors that are stored as `name` ("base", "motion"); null for
+/// configurations without one. As strict.
 std::unique_ptr<const EngineBase> loadBase(const Config& config, const BodyFacts& body,
-                                           const TensorFile& file, const std::string& origin);
+                                           const TensorFile& file, const std::string& name,
+                                           const std::string& origin);
 
 }  // namespace marey::moglow

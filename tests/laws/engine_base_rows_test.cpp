@@ -49,7 +49,7 @@ struct Bases {
     Holder holder(plain);
     loadWeights(holder, own, name);
     plain->to(torch::kFloat64);
-    engine = makeEngineBase(config, body, file);
+    engine = makeEngineBase(config, body, file, "base");
     makeRows(name);
   }
 

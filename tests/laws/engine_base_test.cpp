@@ -22,9 +22,13 @@ constexpr uint32_t kWatched = 7;  ///< the sample that appears in every batch
 
 /// The base's tensors are zero until they are fitted: here they move every pose.
 TensorFile linearFile() {
-  TensorFile file = randomModel(
-      {{"pose_dim", 12}, {"tau", 4}, {"steps", 2}, {"hidden", 20}, {"pose_base", "linear"}},
-      "linear", moglow::family(), 1);
+  TensorFile file = randomModel({{"pose_dim", 12},
+                                 {"tau", 4},
+                                 {"steps", 2},
+                                 {"hidden", 20},
+                                 {"pose_base", "linear"},
+                                 {"observation_floor_mm", 0}},
+                                "linear", moglow::family(), 1);
   for (const char* name : {"weights/base.weight", "weights/base.bias"}) {
     Tensor& tensor = file.tensors.at(name);
     auto values = tensor.toFloats();

@@ -140,7 +140,7 @@ TEST(Likelihoods, CurvesKnowTheirMotions) {
   const auto groups = likelihoodGroups(
       scoredGroups(), {"MG"}, [](const std::string&) { return nullptr; }, 20.0);
   const LinkedGrid median = likelihoodGrid(groups, {}, false),
-                   every = likelihoodGrid(groups, {{"MG", 1.5}}, true);
+                   every = likelihoodGrid(groups, {}, true);
   EXPECT_EQ(median.motions.at({0, 1, -1}), (std::vector<MotionId>{{2, 0}, {2, 1}}));
   EXPECT_EQ(median.grid.charts[0].series[1].y, (std::vector<double>{5, 5, -18.5, 4.5}));
   EXPECT_EQ(every.motions.at({0, 0, 1}), (std::vector<MotionId>{{2, 1}}));

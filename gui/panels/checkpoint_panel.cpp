@@ -69,6 +69,16 @@ class CheckpointPanel : public QWidget {
     connect(&m_timer, &QTimer::timeout, this, [this] {
       if (isVisible() && !m_folder->text().isEmpty() && written() != m_written) readRun(false);
     });
+    connect(&workspace, &Workspace::viewAsked, this, [this](ViewState& view) {
+      if (!m_read.isEmpty())
+        view.trainingRun = fs::absolute(m_read.toStdString()).lexically_normal().string();
+    });
+    connect(&workspace, &Workspace::viewOpened, this, [this](const ViewState& view) {
+      if (view.trainingRun.empty()) return;
+      const fs::path folder = m_workspace.experiment().folder / view.trainingRun;
+      m_folder->setText(QString::fromStdString(folder.string()));
+      readRun(false);
+    });
     m_timer.start(kLookEveryMs);
     refreshButton();
   }

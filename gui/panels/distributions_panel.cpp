@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 
+#include "panels/comparison_choice.h"
 #include "panels/plot_panel.h"
 #include "panels/value_table.h"
 #include "panels/workspace_chart.h"
@@ -26,7 +27,8 @@ class DistributionsPanel : public PlotPanel {
       m_quantity->addItem(QString::fromStdString(stats::textOf(quantity).name));
     m_view = combo(QStringLiteral("distributionsView"));
     m_view->addItems({tr("Density"), tr("Violin"), tr("Over time")});
-    tools()->addStretch(1);
+    tools()->addWidget(new ComparisonChoice(workspace, QStringLiteral("distributions"), this), 1);
+    followComparison();
     tools()->addWidget(new QLabel(tr("Body map:"), this));
     m_mapSet = combo(QStringLiteral("distributionsMapSet"));
     m_mapSet->setToolTip(tr("Whose distance to natural motion the body map shows"));
@@ -50,9 +52,10 @@ class DistributionsPanel : public PlotPanel {
 
  protected:
   void refresh() override {
-    m_sets = motionSets(workspace().groups());
+    m_sets = motionSets(workspace().groups(), comparison());
     const auto& sets = m_sets;
     showCounted(sets);
+    if (nothingHeldOut(sets)) return showHint(ComparisonChoice::missingText(workspace()));
     if (sets.empty())
       return showHint(
           tr("No motion is used: open natural clips or sample a path to see how "

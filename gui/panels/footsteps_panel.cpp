@@ -2,6 +2,7 @@
 
 #include <QVBoxLayout>
 
+#include "panels/comparison_choice.h"
 #include "panels/plot_panel.h"
 #include "panels/value_table.h"
 #include "plots/footstep_data.h"
@@ -13,6 +14,8 @@ class FootstepsPanel : public PlotPanel {
  public:
   FootstepsPanel(Workspace& workspace, QWidget* parent)
       : PlotPanel(workspace, QStringLiteral("footsteps"), false, parent) {
+    tools()->addWidget(new ComparisonChoice(workspace, QStringLiteral("footsteps"), this), 1);
+    followComparison();
     m_table = new ValueTable(this);
     m_table->setObjectName(QStringLiteral("footstepsTable"));
     content()->addWidget(m_table, 1);
@@ -28,9 +31,10 @@ class FootstepsPanel : public PlotPanel {
 
  protected:
   void refresh() override {
-    m_sets = motionSets(workspace().groups());
+    m_sets = motionSets(workspace().groups(), comparison());
     const auto& sets = m_sets;
     showCounted(sets);
+    if (nothingHeldOut(sets)) return showHint(ComparisonChoice::missingText(workspace()));
     if (sets.empty())
       return showHint(
           tr("No motion is used: open natural clips or sample a path to count "

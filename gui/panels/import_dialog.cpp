@@ -36,7 +36,12 @@ class ImportDialog : public QDialog {
     setAttribute(Qt::WA_DeleteOnClose);
     auto* layout = new QVBoxLayout(this);
     auto* split = new QSplitter(Qt::Vertical, this);
-    split->addWidget(buildTable());
+    auto* top = new QWidget(split);
+    auto* column = new QVBoxLayout(top);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->addWidget(buildTable(), 1);
+    column->addWidget(buildReason());
+    split->addWidget(top);
     auto* below = new QWidget(split);
     auto* row = new QHBoxLayout(below);
     row->setContentsMargins(0, 0, 0, 0);
@@ -81,6 +86,27 @@ class ImportDialog : public QDialog {
     return m_table;
   }
 
+  /// What is wrong with the chosen file, whole: a cell of the table has no room for it.
+  QWidget* buildReason() {
+    m_reason = new QLabel(this);
+    m_reason->setObjectName(QStringLiteral("importReason"));
+    m_reason->setWordWrap(true);
+    m_reason->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+    m_reason->setTextFormat(Qt::PlainText);
+    m_reason->hide();
+    return m_reason;
+  }
+
+  void showReason() {
+    const int row = m_table->currentIndex().row();
+    const QString text =
+        row < 0
+            ? QString()
+            : m_model->data(m_model->index(row, ImportModel::Faults), Qt::ToolTipRole).toString();
+    m_reason->setText(text);
+    m_reason->setVisible(!text.isEmpty());
+  }
+
   void connectAll() {
     m_refresh.setSingleShot(true);
     m_refresh.setInterval(0);
@@ -92,6 +118,7 @@ class ImportDialog : public QDialog {
               m_table->selectRow(0);
             });
     connect(m_examiner, &ImportExaminer::examined, m_model, &ImportModel::setReports);
+    connect(m_model, &QAbstractItemModel::dataChanged, this, [this] { showReason(); });
     connect(m_examiner, &ImportExaminer::settled, this, [this] {
       if (!m_fitted) m_table->resizeColumnsToContents();
       m_fitted = true;
@@ -185,6 +212,7 @@ class ImportDialog : public QDialog {
   void choose() {
     const int row = m_table->currentIndex().row();
     m_overrides->setEnabled(row >= 0);
+    showReason();
     if (row < 0) return;
     m_overrides->setOptions(m_model->files()[m_model->fileAt(row)].options);
     showPreview();
@@ -242,6 +270,7 @@ class ImportDialog : public QDialog {
   bool m_fitted = false;  ///< the columns, to what they hold
   QTimer m_refresh;
   QTableView* m_table = nullptr;
+  QLabel* m_reason = nullptr;
   ImportPreview* m_preview = nullptr;
   ImportOverrides* m_overrides = nullptr;
   QLabel* m_note = nullptr;

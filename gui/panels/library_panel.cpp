@@ -9,6 +9,7 @@
 #include <QTreeView>
 #include <QVBoxLayout>
 
+#include "panels/model_card.h"
 #include "panels/motion_tree.h"
 
 #include "experiment/edits.h"
@@ -49,6 +50,10 @@ class LibraryPanel : public QWidget {
     });
     connect(&m_model, &QAbstractItemModel::rowsInserted, this, [this] { expandSmall(); });
     connect(m_view, &QWidget::customContextMenuRequested, this, &LibraryPanel::showMenu);
+    connect(m_view, &QTreeView::doubleClicked, this, [this](const QModelIndex& index) {
+      const int system = m_model.systemOf(m_filter.mapToSource(index));
+      if (system >= 0) showModelCard(m_workspace, static_cast<size_t>(system), this);
+    });
   }
 
  private:
@@ -115,11 +120,13 @@ class LibraryPanel : public QWidget {
     if (m_model.systemOf(index) >= 0)
       fillModelMenu(menu, static_cast<size_t>(m_model.systemOf(index)));
     else if (const MotionGroup* group = m_workspace.group(m_model.idOf(index).group))
-      fillGroupMenu(menu, *group, m_model.sourceOf(index));
+      fillGroupMenu(menu, *group, m_model.sourcesOf(index));
     if (!menu.isEmpty()) menu.exec(m_view->viewport()->mapToGlobal(at));
   }
 
   void fillModelMenu(QMenu& menu, size_t system) {
+    menu.addAction(tr("Card and parameters…"), this,
+                   [this, system] { showModelCard(m_workspace, system, this); });
     menu.addAction(tr("Remove model from the document"), this, [this, system] {
       m_workspace.edit(tr("Remove model"), [=](Experiment& e) { removeSystem(e, system); });
     });
@@ -134,7 +141,8 @@ class LibraryPanel : public QWidget {
           ->setEnabled(!motions.empty());
   }
 
-  void fillGroupMenu(QMenu& menu, const MotionGroup& group, const std::string& source) {
+  void fillGroupMenu(QMenu& menu, const MotionGroup& group,
+                     const std::vector<std::string>& sources) {
     const int id = group.id;
     const auto selected = m_workspace.selection().motions;
     menu.addAction(tr("Show only the selected motions"), this,
@@ -151,11 +159,16 @@ class LibraryPanel : public QWidget {
     addUse(menu, all, tr("Use all of this group"), tr("Leave this group out"));
     menu.addSeparator();
     if (group.natural()) {
-      menu.addAction(tr("Remove source “%1” from the document").arg(QString::fromStdString(source)),
-                     this, [this, source] {
-                       m_workspace.edit(tr("Remove source"),
-                                        [&](Experiment& e) { removeNatural(e, source); });
-                     });
+      if (sources.empty()) return;
+      const QString text =
+          sources.size() == 1 ? tr("Remove source “%1” from the document")
+                                    .arg(QString::fromStdString(sources.front()))
+                              : tr("Remove these %1 sources from the document").arg(sources.size());
+      menu.addAction(text, this, [this, sources] {
+        m_workspace.edit(tr("Remove source"), [&](Experiment& e) {
+          for (const std::string& source : sources) removeNatural(e, source);
+        });
+      });
       return;
     }
     if (group.recipe) {

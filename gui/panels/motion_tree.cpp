@@ -7,6 +7,7 @@
 #include <QPainter>
 #include <QPixmap>
 #include <algorithm>
+#include <filesystem>
 
 #include "panels/paint_style.h"
 
@@ -30,6 +31,14 @@ QIcon swatch(const render::Colour& colour) {
 QString recipeText(const MotionGroup& group) {
   const int motions = static_cast<int>(group.motions.size());
   if (group.natural()) return MotionTree::tr("%n natural clip(s)", nullptr, motions);
+  if (group.heldOut())
+    return MotionTree::tr(
+               "%1 along the control of every natural clip\n%2 motions, seed %3, "
+               "temperature %4")
+        .arg(QString::fromStdString(group.system))
+        .arg(motions)
+        .arg(group.recipe->seed)
+        .arg(group.recipe->system.temperature);
   if (!group.recipe) return MotionTree::tr("%n steered motion(s)", nullptr, motions);
   const SampleRecipe& r = *group.recipe;
   return MotionTree::tr("%1 along “%2”\n%3 samples, seed %4, temperature %5\nmodel %6 (%7)")
@@ -39,6 +48,14 @@ QString recipeText(const MotionGroup& group) {
       .arg(r.system.temperature)
       .arg(QString::fromStdString(r.system.model),
            QString::fromStdString(group.modelHash).left(12));
+}
+
+/// Sources that stand in one branch have one place: files their folder, all else itself.
+std::string placeOf(const std::string& source) {
+  const bool other = source.starts_with("@") || source.starts_with("walker:");
+  const std::filesystem::path path = source;
+  if (other || path.extension().empty()) return source;
+  return path.parent_path().empty() ? "." : path.parent_path().string();
 }
 
 }  // namespace
@@ -61,10 +78,10 @@ std::vector<MotionTree::Branch> MotionTree::branchesNow() const {
       out.push_back({group.id, {}, 0, motions});
       continue;
     }
-    // Clips of one source stand together.
+    // Clips of one source stand together, and so do files of one folder.
     for (int i = 0; i < motions; ++i) {
-      const std::string& source = group.motions[static_cast<size_t>(i)].source;
-      if (i == 0 || source != out.back().source) out.push_back({group.id, source, i, 0});
+      const std::string place = placeOf(group.motions[static_cast<size_t>(i)].source);
+      if (i == 0 || place != out.back().source) out.push_back({group.id, place, i, 0});
       ++out.back().rows;
     }
   }
@@ -130,10 +147,24 @@ int MotionTree::systemOf(const QModelIndex& index) const {
 }
 
 std::string MotionTree::sourceOf(const QModelIndex& index) const {
+  const std::vector<std::string> sources = sourcesOf(index);
+  return sources.empty() ? std::string() : sources.front();
+}
+
+std::vector<std::string> MotionTree::sourcesOf(const QModelIndex& index) const {
   const Branch* branch = branchOf(index);
   const MotionGroup* group = branch ? m_workspace.group(branch->group) : nullptr;
-  if (group == nullptr || branch->first >= static_cast<int>(group->motions.size())) return {};
-  return group->motions[static_cast<size_t>(branch->first)].source;
+  std::vector<std::string> out;
+  if (group == nullptr || !group->natural()) return out;
+  const bool whole = index.internalId() == kBranchLevel;
+  const int first = whole ? branch->first : branch->first + index.row();
+  const int last = std::min(whole ? branch->first + branch->rows : first + 1,
+                            static_cast<int>(group->motions.size()));
+  for (int i = first; i < last; ++i) {
+    const std::string& source = group->motions[static_cast<size_t>(i)].source;
+    if (out.empty() || out.back() != source) out.push_back(source);
+  }
+  return out;
 }
 
 QModelIndex MotionTree::indexOf(const MotionId& id) const {
@@ -230,7 +261,9 @@ QVariant MotionTree::modelData(size_t index, int column, int role) const {
   if (column != Name || index >= systems.size()) return {};
   if (role == Qt::DisplayRole) return QString::fromStdString(systems[index].name);
   if (role == Qt::DecorationRole) return swatch(render::colourOf(static_cast<int>(index)));
-  if (role == Qt::ToolTipRole) return QString::fromStdString(m_workspace.modelFile(systems[index]));
+  if (role == Qt::ToolTipRole)
+    return tr("%1\nDouble-click: card and parameters")
+        .arg(QString::fromStdString(m_workspace.modelFile(systems[index])));
   return {};
 }
 

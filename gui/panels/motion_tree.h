@@ -22,6 +22,8 @@ class MotionTree : public QAbstractItemModel {
   QModelIndex indexOf(const MotionId& id) const;
   /// The document's name for where a natural motion or branch comes from; else empty.
   std::string sourceOf(const QModelIndex& index) const;
+  /// All of a branch; that of a motion.
+  std::vector<std::string> sourcesOf(const QModelIndex& index) const;
   /// The place of a model in the document; -1 for all other rows.
   int systemOf(const QModelIndex& index) const;
 
@@ -38,7 +40,7 @@ class MotionTree : public QAbstractItemModel {
   /// What a branch was at the last change of structure: views are told before rows move.
   struct Branch {
     int group = kModels;
-    std::string source;       ///< natural motion of several sources: one of them
+    std::string source;       ///< natural motion of several sources: one, or the folder of files
     int first = 0, rows = 0;  ///< of the group's motions, or the number of models
     bool operator==(const Branch&) const = default;
   };

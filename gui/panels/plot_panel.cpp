@@ -71,6 +71,12 @@ PlotPanel::PlotPanel(Workspace& workspace, const QString& name, bool overTime, Q
   });
   connect(&workspace, &Workspace::selectionChanged, this, [this] { selectionMoved(); });
   connect(&workspace, &Workspace::rangeChanged, this, [this] { rangeMoved(); });
+  m_chart->setNamer([this](const CurveRef& curve) {
+    const auto found = m_curves.find(curve);
+    if (found == m_curves.end() || found->second.size() != 1) return QString();
+    const Motion* motion = m_workspace.motion(found->second.front());
+    return motion ? QString::fromStdString(motion->clip->name) : QString();
+  });
   connect(m_chart, &ChartView::clicked, this, &PlotPanel::takeClick);
   connect(m_chart, &ChartView::saveFailed, this, [this](const QString& error) {
     m_workspace.report(tr("The chart was not saved"), error);
@@ -112,7 +118,7 @@ void PlotPanel::refreshSoon() {
 
 void PlotPanel::motionsMoved() {
   const Experiment& e = m_workspace.experiment();
-  Inputs now{.sets = motionSets(m_workspace.groups()),
+  Inputs now{.sets = motionSets(m_workspace.groups(), comparison()),
              .systems = e.systems,
              .feet = e.feet,
              .toleranceStepCmS = e.toleranceStepCmS,
@@ -132,6 +138,20 @@ void PlotPanel::motionsMoved() {
     m_again = true;
   else
     refreshSoon();
+}
+
+void PlotPanel::followComparison() {
+  m_compares = true;
+  connect(&m_workspace, &Workspace::comparisonChanged, this, &PlotPanel::refreshSoon);
+}
+
+Comparison PlotPanel::comparison() const {
+  return m_compares ? m_workspace.comparison() : Comparison::ThisPath;
+}
+
+bool PlotPanel::nothingHeldOut(const std::vector<MotionSet>& sets) const {
+  return comparison() == Comparison::HeldOut &&
+         std::none_of(sets.begin(), sets.end(), [](const MotionSet& s) { return !s.natural; });
 }
 
 void PlotPanel::showEvent(QShowEvent* event) {
@@ -228,7 +248,7 @@ void PlotPanel::selectMotions(const std::vector<MotionId>& motions, bool add) {
 
 render::Recipe PlotPanel::recipe() const {
   return plotRecipe(m_name.toStdString(), m_workspace.experiment(), m_workspace.groups(),
-                    m_workspace.range());
+                    m_workspace.range(), comparison());
 }
 
 void PlotPanel::run(const QString& title, Job::Work work, std::function<void()> take) {

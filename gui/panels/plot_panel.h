@@ -74,6 +74,11 @@ class PlotPanel : public QWidget {
         [result, take = std::move(take)] { take(**result); });
   }
 
+  /// From now on the panel compares along what the workspace says; others always along the path.
+  void followComparison();
+  Comparison comparison() const;
+  /// Whether held-out control is asked for and no motion follows it.
+  bool nothingHeldOut(const std::vector<MotionSet>& sets) const;
   bool computing() const { return m_job != 0; }
 
   void showEvent(QShowEvent* event) override;
@@ -104,6 +109,7 @@ class PlotPanel : public QWidget {
   std::map<CurveRef, std::vector<MotionId>> m_curves;
   QTimer m_timer;
   bool m_overTime = false;
+  bool m_compares = false;
   bool m_stale = true;   ///< changed while hidden
   bool m_again = false;  ///< motions have changed while a plot of the earlier ones was worked out
   Inputs m_inputs;

@@ -37,9 +37,9 @@ SceneBar::SceneBar(SceneView& view, QWidget* shortcutOwner, QWidget* parent)
       {tr("World"), tr("Root-aligned"), tr("Side by side")});
   buildViewMenu();
   buildShowMenu();
-  addToggle(QStringLiteral("sceneFollow"), tr("Follow"),
-            tr("The camera moves along with the chosen motions, or with all"), {},
-            [this](bool on) { m_view.setFollow(on); });
+  m_follow = addToggle(QStringLiteral("sceneFollow"), tr("Follow"),
+                       tr("The camera moves along with the chosen motions, or with all"), {},
+                       [this](bool on) { m_view.setFollow(on); });
   m_edit = addToggle(QStringLiteral("sceneEditPath"), tr("Edit path"),
                      tr("Drag the way-points of the current path on the floor"), {Qt::Key_E},
                      [this](bool on) {
@@ -66,6 +66,7 @@ SceneBar::SceneBar(SceneView& view, QWidget* shortcutOwner, QWidget* parent)
   });
   connect(&m_view.workspace(), &Workspace::documentChanged, this, &SceneBar::refreshSystems);
   refreshSystems();
+  connectView();
 }
 
 /// A choice of models matters only where there are several and likelihood is shown.
@@ -151,12 +152,13 @@ void SceneBar::buildViewMenu() {
     addAction(menu, QLatin1String(preset.name), preset.text, preset.keys,
               [this, view = preset.view] { m_view.setView(view); });
   menu->addSeparator();
-  QAction* flat = addAction(menu, QStringLiteral("sceneOrthographic"), tr("Orthographic"),
-                            {Qt::Key_5, Qt::Key_O}, [] {});
-  flat->setCheckable(true);
-  connect(flat, &QAction::toggled, this, [this](bool on) { m_view.setOrthographic(on); });
+  m_flat = addAction(menu, QStringLiteral("sceneOrthographic"), tr("Orthographic"),
+                     {Qt::Key_5, Qt::Key_O}, [] {});
+  m_flat->setCheckable(true);
+  connect(m_flat, &QAction::toggled, this, [this](bool on) { m_view.setOrthographic(on); });
   addAction(menu, QStringLiteral("sceneFit"), tr("Fit everything"), {Qt::Key_F, Qt::Key_X},
             [this] { m_view.fit(); });
+  buildCameraSlots(menu);
 }
 
 void SceneBar::buildShowMenu() {

@@ -9,6 +9,7 @@
 #include <QSlider>
 #include <QToolButton>
 #include <functional>
+#include <map>
 
 #include "panels/scene_view.h"
 
@@ -28,6 +29,13 @@ class SceneBar : public QWidget {
   QAction* addAction(QMenu* menu, const QString& name, const QString& text,
                      const QList<QKeySequence>& keys, const std::function<void()>& run);
   void buildViewMenu();
+  void buildCameraSlots(QMenu* menu);
+  // scene_bar_view.cpp
+  void connectView();
+  SceneLook look() const;
+  void setLook(const SceneLook& look);
+  void saveCamera(int slot);
+  void loadCamera(int slot);
   void buildShowMenu();
   QWidget* showForm(QWidget* parent);
   QDoubleSpinBox* addSeconds(QWidget* form, const char* name, double low, double high,
@@ -42,7 +50,9 @@ class SceneBar : public QWidget {
   QDoubleSpinBox *m_ghosts = nullptr, *m_trailS = nullptr;
   QSlider* m_opacity = nullptr;
   QCheckBox *m_contacts = nullptr, *m_shadow = nullptr, *m_path = nullptr;
-  QToolButton* m_edit = nullptr;
+  QToolButton *m_edit = nullptr, *m_follow = nullptr;
+  QAction* m_flat = nullptr;
+  std::map<int, CameraPose> m_cameras;  ///< by slot
 };
 
 }  // namespace marey::gui

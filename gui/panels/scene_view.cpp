@@ -154,7 +154,7 @@ void SceneView::fitNew() {
   // More motions widen the view until the user has moved the camera; fewer leave it alone. A
   // path alone is looked at once, so that editing it does not move the floor under the mouse.
   const bool more = count > m_fittedMotions || (path && !m_fittedPath && count == 0);
-  if (more && (!m_cameraMoved || m_fittedMotions == 0))
+  if (more && !m_cameraKept && (!m_cameraMoved || m_fittedMotions == 0))
     m_scene.setView(render::LiveView::ThreeQuarter, width(), height());
   m_fittedMotions = count;
   m_fittedPath = path;
@@ -227,6 +227,32 @@ void SceneView::fit() {
   if (m_content.motions.empty() && m_path->frames().empty()) return;
   m_scene.fit(width(), height());
   schedule();
+}
+
+CameraPose SceneView::camera() const {
+  const render::Camera c = m_scene.camera();
+  const auto point = [](const Vec3& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; };
+  return {point(c.eye), point(c.target), point(c.up), c.heightM, c.orthographic};
+}
+
+void SceneView::setCamera(const CameraPose& pose) {
+  const auto point = [](const std::array<double, 3>& v) {
+    return Vec3(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
+  };
+  render::Viewpoint viewpoint = m_scene.viewpoint();
+  viewpoint.camera.eye = point(pose.eye);
+  viewpoint.camera.target = point(pose.target);
+  viewpoint.camera.up = point(pose.up);
+  viewpoint.camera.heightM = pose.heightM;
+  viewpoint.camera.orthographic = pose.orthographic;
+  m_cameraKept = true;
+  m_scene.setViewpoint(viewpoint);
+  schedule();
+}
+
+void SceneView::releaseCamera() {
+  m_cameraKept = m_cameraMoved = false;
+  m_fittedMotions = 0;
 }
 
 void SceneView::setFollow(bool follow) {

@@ -29,6 +29,13 @@ class SceneView : public QVTKOpenGLNativeWidget {
   render::LiveScene& scene() { return m_scene; }
   void setView(render::LiveView view);
   void fit();
+  /// Where the camera is, and back there; it then stays while motions come and go.
+  CameraPose camera() const;
+  void setCamera(const CameraPose& pose);
+  /// Whether somebody chose where the camera is.
+  bool cameraChosen() const { return m_cameraMoved || m_cameraKept; }
+  /// Another document: motions choose the view again.
+  void releaseCamera();
   void setFollow(bool follow);
   void setOrthographic(bool orthographic);
   void setPathEditing(bool editing);
@@ -84,6 +91,7 @@ class SceneView : public QVTKOpenGLNativeWidget {
   bool m_redrawPosted = false;
   bool m_motionsChanged = true, m_optionsChanged = true;
   bool m_cameraMoved = false;  ///< by the user, who then keeps it
+  bool m_cameraKept = false;   ///< as the document or a slot says
   size_t m_fittedMotions = 0;
   bool m_fittedPath = false;
   QString m_trouble;  ///< why a choice could not be drawn

@@ -7,7 +7,9 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 #include <cmath>
+#include <set>
 
+#include "panels/comparison_choice.h"
 #include "panels/plot_panel.h"
 #include "panels/value_table.h"
 #include "plots/statistics_data.h"
@@ -42,7 +44,9 @@ class StatisticsPanel : public PlotPanel {
     m_copy = button(QStringLiteral("statisticsCopy"), tr("Copy"));
     m_copy->setToolTip(tr("Copies the table as tab-separated text"));
     m_export = button(QStringLiteral("statisticsExport"), tr("Export CSV..."));
-    tools()->insertStretch(1);
+    tools()->insertWidget(0, new ComparisonChoice(workspace, QStringLiteral("statistics"), this),
+                          1);
+    followComparison();
     m_input = new QLabel(this);
     m_input->setObjectName(QStringLiteral("statisticsInput"));
     m_input->setWordWrap(true);
@@ -64,10 +68,12 @@ class StatisticsPanel : public PlotPanel {
   void refresh() override {
     const StatisticsInput input = inputNow();
     showCounted(input.sets, m_shown ? m_shown->notes : std::vector<std::string>{});
-    m_compute->setEnabled(!input.sets.empty());
+    const bool missing = nothingHeldOut(input.sets);
+    m_compute->setEnabled(!input.sets.empty() && !missing);
     if (m_shown) return showInput(input);
     // A hint would end the work; what has changed meanwhile is told when it is done.
     if (computing()) return;
+    if (missing) return showHint(ComparisonChoice::missingText(workspace()));
     showHint(input.sets.empty()
                  ? tr("No motion is used: open natural clips or sample a path first.")
                  : tr("Press \"Compute\" to work out every statistic of %1.")
@@ -87,11 +93,12 @@ class StatisticsPanel : public PlotPanel {
 
   StatisticsInput inputNow() const {
     const Experiment& e = workspace().experiment();
-    return {.sets = motionSets(workspace().groups()),
+    return {.sets = motionSets(workspace().groups(), comparison()),
             .range = workspace().range(),
             .feet = e.feet,
             .footStepCmS = e.toleranceStepCmS,
-            .seed = e.seed};
+            .seed = e.seed,
+            .against = naturalChoiceByName(e.against)};
   }
 
   void start() {
@@ -108,7 +115,11 @@ class StatisticsPanel : public PlotPanel {
   /// What the numbers belong to, and whether that is what is used now.
   void showInput(const StatisticsInput& now) {
     const bool current = m_shown->input.sameAs(now);
-    const QString what = QString::fromStdString(m_shown->input.text());
+    QString what = QString::fromStdString(m_shown->input.text());
+    // Sets may be compared with different natural motion.
+    const std::set<std::string> natural(m_shown->compared.begin(), m_shown->compared.end());
+    for (const std::string& text : natural)
+      what += tr("; compared with %1").arg(QString::fromStdString(text));
     m_input->setText(current ? tr("Computed for: %1").arg(what)
                              : tr("<b>Out of date.</b> Computed for: %1. The motions have changed "
                                   "since; press \"Compute\".")

@@ -111,10 +111,20 @@ QString ChartView::hoverText(const ChartHit& hit) const {
   if (!hit.curve) return QString::fromStdString(text + "\n" + valueText(hit.y, chart.y));
   const render::Series& series = chart.series[static_cast<size_t>(hit.curve->series)];
   if (!series.name.empty()) text += "\n" + series.name;
-  if (hit.curve->row >= 0) text += fmt::format(", motion {}", hit.curve->row + 1);
+  const QString motion = m_namer ? m_namer(*hit.curve) : QString();
+  if (!motion.isEmpty())
+    text += "\n" + motion.toStdString();
+  else if (hit.curve->row >= 0)
+    text += fmt::format(", motion {}", hit.curve->row + 1);
   // The height of a violin's row says only whose it is.
   if (chart.y.categories.empty()) text += "\n" + valueText(hit.curveY, chart.y);
   return QString::fromStdString(text);
+}
+
+QString ChartView::textAt(const QPoint& at) const {
+  draw();
+  const auto hit = hitAt(m_shown, m_frames, at.x(), at.y());
+  return hit ? hoverText(*hit) : QString();
 }
 
 void ChartView::paintHover(QPainter& painter) const {

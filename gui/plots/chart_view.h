@@ -5,6 +5,7 @@
 #include <QImage>
 #include <QString>
 #include <QWidget>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -36,6 +37,8 @@ class ChartView : public QWidget {
   void setTimeAxis(bool time) { m_timeAxis = time; }
   void setCursor(std::optional<double> x);
   void setRange(std::optional<ChartSpan> range);
+  /// Names the motion that a curve is of; empty: the curve is of several or none.
+  void setNamer(std::function<QString(const CurveRef&)> namer) { m_namer = std::move(namer); }
   void setHighlights(std::vector<ChartHighlight> highlights);
   const std::vector<ChartHighlight>& highlights() const { return m_highlights; }
   void resetZoom();
@@ -43,6 +46,8 @@ class ChartView : public QWidget {
 
   /// Where the plots lie in the widget now.
   const std::vector<render::ChartFrame>& frames() const;
+  /// What the mouse is told at a place of the widget; empty beside the plots.
+  QString textAt(const QPoint& at) const;
   /// The picture without overlays.
   const QImage& picture() const;
   /// .svg, .pdf, .png or .csv. Throws UsageError, FileError.
@@ -102,6 +107,7 @@ class ChartView : public QWidget {
   QString m_fileStem = QStringLiteral("chart");
   bool m_timeAxis = false;
   std::optional<double> m_cursor;
+  std::function<QString(const CurveRef&)> m_namer;
   std::optional<ChartSpan> m_range;
   std::vector<ChartHighlight> m_highlights;
   std::optional<ChartSpan> m_zoom;

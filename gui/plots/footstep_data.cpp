@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "motion/roles.h"
 #include "report/density.h"
+#include "stats/controls.h"
 
 namespace marey::gui {
 namespace {
@@ -76,7 +77,10 @@ FootstepResult resultOf(const MotionSet& set, const ClipsInRange& part, const Fo
     progress.report(static_cast<double>(i + 1) / static_cast<double>(part.clips.size()));
   }
   const auto tolerances = stats::footstepTolerances({.feet = {}, .stepCmS = query.stepCmS});
-  const std::vector<double> each(all.size(), 1.0);
+  // Several motions along one control count as one.
+  const std::vector<double> each = part.follows.empty()
+                                       ? std::vector<double>(all.size(), 1.0)
+                                       : stats::ControlSets(part.follows, {}).once().clips;
   for (const auto& foot : tallies) result.feet.push_back(stats::curveOf(tolerances, foot, each));
   result.all = stats::curveOf(tolerances, all, each);
   addDurations(result, part.clips, query.feet);

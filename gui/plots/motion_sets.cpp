@@ -34,15 +34,21 @@ void addUsed(MotionSet& set, const MotionGroup& group) {
       continue;
     }
     set.ids.push_back({group.id, used[k]});
-    set.clips.push_back(group.motions[static_cast<size_t>(used[k])].clip);
+    const Motion& motion = group.motions[static_cast<size_t>(used[k])];
+    set.clips.push_back(motion.clip);
+    if (!motion.wanted) continue;
+    set.wantedEach.push_back(motion.wanted);
+    set.follows.push_back(motion.follows);
   }
 }
 
 }  // namespace
 
-std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups) {
+std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups, Comparison comparison) {
   std::vector<MotionSet> sets;
+  const bool heldOut = comparison == Comparison::HeldOut;
   for (const MotionGroup& group : groups) {
+    if (group.heldOut() != heldOut && !(heldOut && group.natural())) continue;
     // A motion that is still being steered grows at every frame: it is compared once it is kept.
     if (!group.complete && !group.recipe && !group.natural()) continue;
     MotionSet set{.group = group.id,
@@ -86,9 +92,10 @@ ClipsInRange clipsIn(const MotionSet& set, const std::optional<TimeRange>& range
     out.ids.push_back(set.ids[i]);
     out.clips.push_back(range ? sliceFrames(*clip, span.first, span.last) : *clip);
     if (!set.follows.empty()) out.follows.push_back(set.follows[i]);
-    if (set.wanted.empty()) continue;
-    const auto frames = static_cast<int>(set.wanted.size());
-    const auto begin = set.wanted.begin();
+    const auto& wanted = set.wantedEach.empty() ? set.wanted : *set.wantedEach[i];
+    if (wanted.empty()) continue;
+    const auto frames = static_cast<int>(wanted.size());
+    const auto begin = wanted.begin();
     out.wanted.emplace_back(begin + std::min(span.first, frames),
                             begin + std::min(span.last, frames));
   }

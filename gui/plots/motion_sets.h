@@ -19,6 +19,8 @@ struct MotionSet {
   std::vector<MotionId> ids;
   std::vector<ClipPtr> clips;     ///< one per id
   std::vector<RootFrame> wanted;  ///< the path that was asked for
+  /// One per id where there is no single path: held-out motions follow the natural clips' control.
+  std::vector<std::shared_ptr<const std::vector<RootFrame>>> wantedEach = {};
   /// For each motion the index of the natural clip whose control it follows; empty: the motions of
   /// a system all follow `wanted`, natural ones each their own.
   std::vector<int> follows = {};
@@ -29,7 +31,9 @@ struct MotionSet {
 
 /// One set per group: the motions that are used, shown or hidden, and that have the joints which
 /// most of these have. Natural motion comes first. Motions that are being steered are left out.
-std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups);
+/// Of held-out control: the motions along it instead of those along paths.
+std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups,
+                                  Comparison comparison = Comparison::ThisPath);
 const MotionSet* naturalSet(const std::vector<MotionSet>& sets);
 
 /// The parts of a set's motions inside a range of time (all without one), by the rule of

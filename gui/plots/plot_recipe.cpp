@@ -9,9 +9,9 @@ namespace marey::gui {
 
 render::Recipe plotRecipe(const std::string& plot, const Experiment& experiment,
                           const std::vector<MotionGroup>& groups,
-                          const std::optional<TimeRange>& range) {
+                          const std::optional<TimeRange>& range, Comparison comparison) {
   std::vector<RecipeSet> sets;
-  for (const MotionSet& set : motionSets(groups)) {
+  for (const MotionSet& set : motionSets(groups, comparison)) {
     RecipeSet entry{set.name, {}, std::to_string(set.clips.size())};
     for (const MotionGroup& group : groups)
       if (group.id == set.group && group.recipe)

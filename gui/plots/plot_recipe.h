@@ -14,6 +14,7 @@ namespace marey::gui {
 /// Document, range, and of every visible set its motions, model, seed and temperature.
 render::Recipe plotRecipe(const std::string& plot, const Experiment& experiment,
                           const std::vector<MotionGroup>& groups,
-                          const std::optional<TimeRange>& range);
+                          const std::optional<TimeRange>& range,
+                          Comparison comparison = Comparison::ThisPath);
 
 }  // namespace marey::gui

@@ -8,6 +8,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "motion/main_body.h"
+#include "report/experiment_report.h"
 #include "stats/footsteps.h"
 
 namespace marey::gui {
@@ -131,7 +132,8 @@ StatisticsTable statisticsTable(const StatisticsInput& input, Progress& progress
                                   static_cast<double>(i + 1) / static_cast<double>(sets.size()));
     std::vector<stats::StatisticResult> results;
     try {
-      results = stats::evaluate(stats::allStatistics(), one, {.seed = input.seed}, part);
+      results = stats::evaluate(stats::allStatistics(), one,
+                                {.resamples = report::kReportResamples, .seed = input.seed}, part);
     } catch (const InputError& fault) {
       table.notes.push_back((naturalAlone ? naturalMotions->name : table.systems[i]) + ": " +
                             fault.what());

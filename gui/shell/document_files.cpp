@@ -68,7 +68,7 @@ Autosave::~Autosave() {
 }
 
 bool Autosave::write() {
-  const Experiment& e = m_workspace.experiment();
+  const Experiment e = m_workspace.document();
   const Json copy = {{"file", m_workspace.file().toStdString()},
                      {"folder", e.folder.string()},
                      {"experiment", toJson(e)}};

@@ -15,6 +15,7 @@
 #include "shell/job_bar.h"
 #include "shell/key_rules.h"
 #include "shell/number_box.h"
+#include "shell/offer_bar.h"
 #include <qtadvanceddocking/DockAreaWidget.h>
 #include <qtadvanceddocking/DockManager.h>
 #include <qtadvanceddocking/DockWidget.h>
@@ -51,6 +52,9 @@ MainWindow::MainWindow(Workspace& workspace, const std::vector<PanelSpec>& panel
   buildMenus();
   statusBar()->addPermanentWidget(new JobBar(workspace.jobs(), this));
   connect(&m_workspace, &Workspace::errorReported, this, &MainWindow::showError);
+  connect(&m_workspace, &Workspace::noticed, this,
+          [this](const QString& what) { statusBar()->showMessage(what, kMessageMs); });
+  addToolBar(Qt::TopToolBarArea, new OfferBar(workspace, this));
   connect(&m_workspace, &Workspace::documentChanged, this, &MainWindow::refreshTitle);
   connect(&m_workspace, &Workspace::motionsChanged, this, &MainWindow::refreshBringBack);
   refreshTitle();

@@ -14,6 +14,7 @@
 #include "experiment/edits.h"
 #include "experiment/run.h"
 #include "io/clip_io.h"
+#include "model/model_card.h"
 #include "report/experiment_report.h"
 #include "report/report.h"
 
@@ -192,19 +193,23 @@ void MainWindow::openFiles(const QStringList& files) {
 }
 
 void MainWindow::addModelFiles(const std::vector<std::string>& files) {
+  auto temperatures = std::make_shared<std::vector<double>>();
   m_workspace.jobs().start(
       Lane::Files, tr("Adding models"),
-      [workspace = &m_workspace, files](Progress& progress) {
+      [workspace = &m_workspace, files, temperatures](Progress& progress) {
         for (size_t i = 0; i < files.size(); ++i) {
           progress.throwIfCancelled();
-          workspace->model(files[i]);  // what is no model is refused here
+          // What is no model is refused here.
+          workspace->model(files[i]);
+          temperatures->push_back(modelAdvice(files[i]).temperature.value_or(1.0));
           progress.report(static_cast<double>(i + 1) / static_cast<double>(files.size()), files[i]);
         }
       },
-      [this, files] {
+      [this, files, temperatures] {
         m_workspace.edit(tr("Add models"), [&](Experiment& e) {
-          for (const std::string& file : files)
-            addSystem(e, file, std::filesystem::path(file).stem().string());
+          for (size_t i = 0; i < files.size(); ++i)
+            addSystem(e, files[i], std::filesystem::path(files[i]).stem().string(),
+                      (*temperatures)[i]);
         });
       },
       this);

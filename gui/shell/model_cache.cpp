@@ -1,9 +1,12 @@
 #include "shell/model_cache.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "families.h"
+
+#include "base/error.h"
 
 namespace marey::gui {
 namespace {
@@ -31,6 +34,12 @@ std::shared_ptr<const MotionModel> ModelCache::model(const std::string& file) {
   m_entries.insert(m_entries.begin(), {stamp, loadModel(file, modelFamilies())});
   if (m_entries.size() > kMostModels) m_entries.pop_back();
   return m_entries.front().model;
+}
+
+void requireRate(const MotionModel& model, const std::string& file, double fps) {
+  if (std::abs(model.info().features.fps - fps) > 1e-6)
+    throwInput({.path = file}, fmt::format("a model at the document's {} fps", fps), "{}",
+               model.info().features.fps);
 }
 
 }  // namespace marey::gui

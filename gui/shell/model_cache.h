@@ -27,4 +27,7 @@ class ModelCache {
   std::vector<Entry> m_entries;  ///< the one used last in front
 };
 
+/// Throws InputError unless a model has the document's frame rate.
+void requireRate(const MotionModel& model, const std::string& file, double fps);
+
 }  // namespace marey::gui

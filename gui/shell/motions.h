@@ -22,6 +22,9 @@ struct Motion {
   bool visible = true;      ///< drawn; changes nothing but pictures
   bool used = true;         ///< counted by plots and statistics
   std::string source = {};  ///< of natural motion: the document's name for where it comes from
+  /// The control that it follows, where its group has no single path.
+  std::shared_ptr<const std::vector<RootFrame>> wanted = {};
+  int follows = -1;  ///< the natural motion whose control that is, by its index in its group
 };
 
 /// The natural clips, or the motions of one sample set.
@@ -36,12 +39,20 @@ struct MotionGroup {
   std::string modelHash;
   std::vector<RootFrame> wanted;  ///< the path that was asked for
   std::vector<Motion> motions;
+  std::string modelStamp = {};  ///< of the model's file when they were drawn (ModelCache)
 
   bool natural() const { return colourIndex < 0; }
+  /// One or more motions along the control of every natural clip, in their order.
+  bool heldOut() const { return recipe && recipe->heldOut; }
   render::Colour colour() const {
     return natural() ? render::naturalColour() : render::colourOf(colourIndex);
   }
 };
+
+/// The file of a recipe's model.
+inline std::string modelFileOf(const SampleRecipe& recipe) {
+  return (recipe.folder / recipe.system.model).string();
+}
 
 struct MotionId {
   int group = -1;  ///< MotionGroup::id

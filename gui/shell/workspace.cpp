@@ -2,6 +2,7 @@
 #include "shell/workspace.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 #include "experiment/edits.h"
@@ -122,6 +123,7 @@ void Workspace::openUnsaved(Experiment experiment, const QString& file) {
 void Workspace::start(Experiment experiment, std::optional<Experiment> saved, const QString& file) {
   m_drawings.clear();
   cancelWork();
+  ViewState view = std::exchange(experiment.view, {});
   m_saved = std::move(saved);
   m_history = History<Experiment>(std::move(experiment));
   m_file = file;
@@ -138,14 +140,16 @@ void Workspace::start(Experiment experiment, std::optional<Experiment> saved, co
   Q_EMIT selectionChanged();
   Q_EMIT rangeChanged();
   Q_EMIT timeChanged(0.0);
+  takeView(std::move(view));
   readNatural();
 }
 
 void Workspace::save(const QString& file) {
-  Experiment moved = experiment();
+  Experiment moved = document();
   const fs::path path = file.toStdString();
   moveToFolder(moved, fs::absolute(path).parent_path());
   writeExperiment(path, moved);
+  moved.view = {};
   m_file = file;
   m_saved = moved;
   if (m_history.commit(moved, "Save in another folder")) tellMotions();

@@ -45,6 +45,8 @@ class Workspace : public QObject {
   /// Writes to `file` and takes it as the document's place; relative names are kept pointing at
   /// their files. Throws FileError, and then nothing has changed.
   void save(const QString& file);
+  /// The document with how it is looked at now, as it is written.
+  Experiment document();
   /// The path that the editor and the sampling panel work on; index into experiment().paths.
   int currentPath() const { return m_currentPath; }
   void setCurrentPath(int index);
@@ -88,8 +90,21 @@ class Workspace : public QObject {
   /// Draws a recipe. `replaceGroup`, unless pinned, stays until the first motions are there. The
   /// colour is that of the recipe's system in the document, or `colourIndex` where it is none.
   void sample(const SampleRecipe& recipe, int replaceGroup = -1, int colourIndex = 0);
-  /// The chosen systems along the current path with the document's settings.
+  /// The chosen systems along the current path with the document's settings. Sets that would come
+  /// out as they are stay; noticed() says so.
   void sampleCurrentPath();
+  /// The chosen systems along the control of every natural clip, as a report does; sets that are
+  /// current stay.
+  void sampleHeldOut();
+  /// The chosen systems without held-out motions of the document as it is now.
+  std::vector<std::string> withoutHeldOut() const;
+  /// What plots compare: motions along a path, or those along held-out control.
+  Comparison comparison() const { return m_comparison; }
+  void setComparison(Comparison comparison);
+  /// Sets that the opened document names and that have not been drawn again.
+  const std::vector<KeptSet>& offered() const { return m_offered; }
+  void sampleOffered();
+  void dismissOffered();
   /// Whether sampleCurrentPath takes a system; at first it takes all.
   bool sampled(const std::string& system) const { return !m_leftOut.contains(system); }
   void setSampled(const std::string& system, bool sampled);
@@ -131,6 +146,13 @@ class Workspace : public QObject {
   void selectionChanged();
   void timeChanged(double seconds);
   void rangeChanged();
+  void comparisonChanged();
+  void offeredChanged();
+  /// The document is written: whoever shows it adds how it does.
+  void viewAsked(ViewState& view);
+  /// A document was opened, after documentChanged: to be looked at as it was.
+  void viewOpened(const ViewState& view);
+  void noticed(const QString& what);  ///< news that are no error
   void errorReported(const QString& title, const QString& error);
 
  private:
@@ -149,6 +171,20 @@ class Workspace : public QObject {
   void followUse();
   void takeNatural(NaturalMotion natural);
   void jobEnded(int job, bool successful);
+  // Workspace_view.cpp
+  void takeView(ViewState view);
+  std::vector<ShownClips> shownClips() const;
+  std::vector<KeptSet> keptSets() const;
+  void hideAsKept(MotionGroup& group);
+  void showNatural(MotionGroup& group);
+  // Workspace_held_out.cpp
+  SampleRecipe heldOutRecipe(const ExperimentSystem& system) const;
+  std::string stampOf(const SampleRecipe& recipe) const;
+  std::vector<int> usedNatural() const;
+  const MotionGroup* groupLike(const SampleRecipe& recipe) const;
+  void dropHeldOut();
+  Job::Work heldOutWork(const SampleRecipe& recipe, int group);
+  void takeHeldOut(int group, std::vector<Motion> motions);
   /// Draws the motions of a group and hands them over as they come.
   Job::Work drawingWork(const SampleRecipe& recipe, int group);
   void addMotions(int group, const std::vector<RootFrame>& wanted,
@@ -174,6 +210,11 @@ class Workspace : public QObject {
   int m_naturalJob = -1;
   int m_nextGroup = 1;
   Selection m_selection;
+  Comparison m_comparison = Comparison::ThisPath;
+  std::vector<KeptSet> m_offered;
+  /// What is to be shown of natural motion when it is read; none: as before, and a few of new ones.
+  std::optional<std::vector<ShownClips>> m_naturalShown;
+  std::map<int, std::vector<int>> m_hidden;  ///< motions of groups being drawn that stay hidden
   double m_time = 0.0;
   std::optional<TimeRange> m_range;
   std::shared_ptr<ModelCache> m_models;

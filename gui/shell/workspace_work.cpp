@@ -14,8 +14,6 @@ namespace {
 
 /// Motions that advance together at first while a set is drawn: the first ones are shown soon.
 constexpr int kFirstMotions = 10;
-/// Natural clips that are shown at first: a thousand over each other would show nothing.
-constexpr size_t kNaturalShown = 3;
 /// Lines of a message about files that could not be read.
 constexpr size_t kMostFaults = 8;
 
@@ -125,11 +123,13 @@ void Workspace::takeNatural(NaturalMotion natural) {
   for (size_t i = 0; i < natural.clips.size(); ++i)
     group.motions.push_back({.clip = std::make_shared<const Clip>(std::move(natural.clips[i])),
                              .score = {},
-                             .visible = i < kNaturalShown,
+                             .visible = false,
                              .source = std::move(natural.sources[i])});
+  showNatural(group);
   for (const MotionGroup& old : m_groups)
     if (old.natural()) dropSelectionOf(old.id);
   std::erase_if(m_groups, [](const MotionGroup& g) { return g.natural(); });
+  dropHeldOut();
   const QString odd = oddText(group);
   if (!group.motions.empty()) m_groups.insert(m_groups.begin(), std::move(group));
   followUse();
@@ -190,21 +190,27 @@ void Workspace::sampleCurrentPath() {
     return;
   }
   const ExperimentPath path = e.paths[static_cast<size_t>(m_currentPath)];
+  QStringList unchanged;
   for (const ExperimentSystem& system : e.systems) {
     if (!sampled(system.name)) continue;
     int old = -1;
     for (const MotionGroup& group : m_groups)
-      if (group.recipe && !group.pinned && group.system == system.name &&
+      if (group.recipe && !group.heldOut() && !group.pinned && group.system == system.name &&
           group.recipe->path.name == path.name)
         old = group.id;
-    sample({.system = system,
-            .path = path,
-            .samples = e.samples,
-            .seed = e.seed,
-            .fps = e.fps,
-            .folder = e.folder},
-           old);
+    const SampleRecipe recipe{.system = system,
+                              .path = path,
+                              .samples = e.samples,
+                              .seed = e.seed,
+                              .fps = e.fps,
+                              .folder = e.folder};
+    if (groupLike(recipe) == nullptr)
+      sample(recipe, old);
+    else
+      unchanged << QString::fromStdString(system.name);
   }
+  if (!unchanged.isEmpty())
+    Q_EMIT noticed(tr("Unchanged, and not sampled again: %1").arg(unchanged.join(u", ")));
 }
 
 void Workspace::sample(const SampleRecipe& given, int replaceGroup, int colourIndex) {
@@ -234,21 +240,21 @@ void Workspace::sample(const SampleRecipe& given, int replaceGroup, int colourIn
                       .recipe = recipe,
                       .modelHash = {},
                       .wanted = {},
-                      .motions = {}});
+                      .motions = {},
+                      .modelStamp = stampOf(recipe)});
   tellMotions();
   m_drawings[id].job = m_jobs.start(
       Lane::Models, tr("Sampling %1").arg(QString::fromStdString(name)), drawingWork(recipe, id));
 }
 
 Job::Work Workspace::drawingWork(const SampleRecipe& recipe, int id) {
-  const std::string file = (recipe.folder / recipe.system.model).string();
+  if (recipe.heldOut) return heldOutWork(recipe, id);
+  const std::string file = modelFileOf(recipe);
   const QPointer<Workspace> self(this);
   return [self, models = m_models, file, recipe, id,
           hash = m_drawings[id].modelHash](Progress& progress) {
     const auto weights = models->model(file);
-    if (std::abs(weights->info().features.fps - recipe.fps) > 1e-6)
-      throwInput({.path = file}, fmt::format("a model at the document's {} fps", recipe.fps), "{}",
-                 weights->info().features.fps);
+    requireRate(*weights, file, recipe.fps);
     *hash = weights->info().hash;
     drawSampleSet(
         *weights, recipe, progress, kFirstMotions,
@@ -277,6 +283,7 @@ void Workspace::addMotions(int id, const std::vector<RootFrame>& wanted,
   group->wanted = wanted;
   for (SampledMotion& motion : motions)
     group->motions.push_back({std::move(motion.clip), std::move(motion.score), true});
+  hideAsKept(*group);
   const auto drawing = m_drawings.find(id);
   if (drawing != m_drawings.end()) dropReplaced(std::exchange(drawing->second.replaces, {}));
   tellMotions();
@@ -289,6 +296,7 @@ void Workspace::dropReplaced(const std::vector<int>& groups) {
 
 void Workspace::finishGroup(int id, const Drawing& drawing, bool successful) {
   MotionGroup* group = findGroup(id);
+  m_hidden.erase(id);
   if (group == nullptr) return;
   group->modelHash = *drawing.modelHash;
   group->complete = successful;

@@ -1,0 +1,150 @@
+// How the document is looked at: what is shown, ticked and pinned, kept in it and taken from it.
+#include <algorithm>
+#include <utility>
+
+#include "shell/workspace.h"
+
+#include "base/error.h"
+
+namespace marey::gui {
+namespace {
+
+/// Natural clips that are shown at first: a thousand over each other would show nothing.
+constexpr size_t kNaturalShown = 3;
+
+/// Whether a document that names the set can be opened.
+bool canBeKept(const KeptSet& set) {
+  try {
+    viewStateFromJson({{"sets", Json::array({toJson(set)})}}, "view", {});
+    return true;
+  } catch (const InputError&) {
+    return false;  // a steered motion of one frame has no path, for example
+  }
+}
+
+}  // namespace
+
+Experiment Workspace::document() {
+  Experiment out = experiment();
+  ViewState& view = out.view;
+  const auto path = static_cast<size_t>(m_currentPath);
+  if (path > 0 && path < out.paths.size()) view.path = out.paths[path].name;
+  view.notSampled.assign(m_leftOut.begin(), m_leftOut.end());
+  view.comparison = m_comparison;
+  // While they are being read, what the opened document said still holds.
+  const bool read = std::any_of(m_groups.begin(), m_groups.end(),
+                                [](const MotionGroup& group) { return group.natural(); });
+  if (read)
+    view.natural = shownClips();
+  else
+    view.natural = m_naturalShown;
+  view.sets = keptSets();
+  Q_EMIT viewAsked(view);
+  return out;
+}
+
+void Workspace::takeView(ViewState view) {
+  const auto& paths = experiment().paths;
+  const auto path = std::find_if(paths.begin(), paths.end(),
+                                 [&](const ExperimentPath& p) { return p.name == view.path; });
+  if (path != paths.end()) setCurrentPath(static_cast<int>(path - paths.begin()));
+  for (const std::string& system : view.notSampled)
+    if (systemIndex(system) >= 0) m_leftOut.insert(system);
+  m_naturalShown = view.natural;
+  m_hidden.clear();
+  m_offered = view.sets;
+  m_comparison = view.comparison;
+  Q_EMIT documentChanged();  // ticks
+  Q_EMIT comparisonChanged();
+  Q_EMIT offeredChanged();
+  Q_EMIT viewOpened(view);
+}
+
+std::vector<ShownClips> Workspace::shownClips() const {
+  std::vector<ShownClips> out;
+  for (const MotionGroup& group : m_groups) {
+    if (!group.natural()) continue;
+    int number = 0;
+    for (size_t i = 0; i < group.motions.size(); ++i) {
+      const Motion& motion = group.motions[i];
+      const bool next = i == 0 || motion.source != group.motions[i - 1].source;
+      number = next ? 0 : number + 1;
+      if (next) out.push_back({motion.source, {}});
+      if (motion.visible) out.back().clips.push_back(number);
+    }
+  }
+  return out;
+}
+
+/// Clips of a source that was there keep their ticks; of new ones the first few are shown.
+void Workspace::showNatural(MotionGroup& group) {
+  const std::vector<ShownClips> before = m_naturalShown ? *m_naturalShown : shownClips();
+  m_naturalShown.reset();
+  std::vector<Motion*> fresh;
+  size_t shown = 0;
+  int number = 0;
+  for (size_t i = 0; i < group.motions.size(); ++i) {
+    Motion& motion = group.motions[i];
+    number = i > 0 && motion.source == group.motions[i - 1].source ? number + 1 : 0;
+    const auto known = std::find_if(before.begin(), before.end(), [&](const ShownClips& source) {
+      return source.source == motion.source;
+    });
+    if (known == before.end()) {
+      fresh.push_back(&motion);
+      continue;
+    }
+    motion.visible =
+        std::find(known->clips.begin(), known->clips.end(), number) != known->clips.end();
+    shown += motion.visible ? 1 : 0;
+  }
+  for (Motion* motion : fresh) motion->visible = shown++ < kNaturalShown;
+}
+
+std::vector<KeptSet> Workspace::keptSets() const {
+  std::vector<KeptSet> out;
+  for (const MotionGroup& group : m_groups) {
+    if (!group.recipe) continue;
+    KeptSet set = keptSetOf(*group.recipe);
+    set.pinned = group.pinned;
+    if (systemIndex(group.system) < 0) set.colour = group.colourIndex;
+    for (size_t i = 0; i < group.motions.size(); ++i)
+      if (!group.motions[i].visible) set.hidden.push_back(static_cast<int>(i));
+    if (canBeKept(set)) out.push_back(std::move(set));
+  }
+  // What was not drawn again is not given up by saving.
+  out.insert(out.end(), m_offered.begin(), m_offered.end());
+  return out;
+}
+
+void Workspace::hideAsKept(MotionGroup& group) {
+  const auto hidden = m_hidden.find(group.id);
+  if (hidden == m_hidden.end()) return;
+  for (const int index : hidden->second)
+    if (index >= 0 && index < static_cast<int>(group.motions.size()))
+      group.motions[static_cast<size_t>(index)].visible = false;
+}
+
+void Workspace::sampleOffered() {
+  const std::vector<KeptSet> sets = std::exchange(m_offered, {});
+  Q_EMIT offeredChanged();
+  for (const KeptSet& set : sets) {
+    const SampleRecipe recipe = recipeOf(set, experiment().fps, experiment().folder);
+    sample(recipe, -1, set.colour);
+    MotionGroup& group = m_groups.back();
+    group.pinned = set.pinned;
+    m_hidden[group.id] = set.hidden;
+  }
+}
+
+void Workspace::dismissOffered() {
+  m_offered.clear();
+  Q_EMIT offeredChanged();
+}
+
+void Workspace::setComparison(Comparison comparison) {
+  if (comparison == m_comparison) return;
+  m_comparison = comparison;
+  Q_EMIT comparisonChanged();
+}
+
+}  // namespace marey::gui

@@ -152,6 +152,7 @@ void Workspace::save(const QString& file) {
   moved.view = {};
   m_file = file;
   m_saved = moved;
+  m_savedPins = pinnedSets();
   if (m_history.commit(moved, "Save in another folder")) tellMotions();
   // What is edited next is another edit, so that undo comes back to what was saved.
   m_history.seal();

@@ -41,7 +41,10 @@ class Workspace : public QObject {
   /// The same for one that is not as it stands in `file`, and there is no way back behind it.
   void openUnsaved(Experiment experiment, const QString& file);
   QString file() const { return m_file; }  ///< empty: never saved
-  bool modified() const { return !m_saved || m_history.state() != *m_saved; }
+  /// Whether saving would keep what is lost without: edits, and sets that were pinned or let go.
+  bool modified() const {
+    return !m_saved || m_history.state() != *m_saved || pinnedSets() != m_savedPins;
+  }
   /// Writes to `file` and takes it as the document's place; relative names are kept pointing at
   /// their files. Throws FileError, and then nothing has changed.
   void save(const QString& file);
@@ -175,6 +178,8 @@ class Workspace : public QObject {
   void takeView(ViewState view);
   std::vector<ShownClips> shownClips() const;
   std::vector<KeptSet> keptSets() const;
+  /// What tells pinned sets apart, drawn or offered; sorted.
+  std::vector<std::string> pinnedSets() const;
   void hideAsKept(MotionGroup& group);
   void showNatural(MotionGroup& group);
   // Workspace_held_out.cpp
@@ -212,6 +217,7 @@ class Workspace : public QObject {
   Selection m_selection;
   Comparison m_comparison = Comparison::ThisPath;
   std::vector<KeptSet> m_offered;
+  std::vector<std::string> m_savedPins;  ///< pinnedSets() of what was opened or saved
   /// What is to be shown of natural motion when it is read; none: as before, and a few of new ones.
   std::optional<std::vector<ShownClips>> m_naturalShown;
   std::map<int, std::vector<int>> m_hidden;  ///< motions of groups being drawn that stay hidden

@@ -122,6 +122,7 @@ void Workspace::setPinned(int id, bool pinned) {
   if (MotionGroup* group = findGroup(id)) {
     group->pinned = pinned;
     Q_EMIT motionsChanged();
+    Q_EMIT documentChanged();  // it keeps pinned sets
   }
 }
 
@@ -133,8 +134,11 @@ void Workspace::removeGroup(int id) {
     m_jobs.cancel(job);
   }
   dropSelectionOf(id);
-  if (std::erase_if(m_groups, [id](const MotionGroup& group) { return group.id == id; }) > 0)
-    tellMotions();
+  const std::vector<std::string> pinned = pinnedSets();
+  if (std::erase_if(m_groups, [id](const MotionGroup& group) { return group.id == id; }) == 0)
+    return;
+  tellMotions();
+  if (pinnedSets() != pinned) Q_EMIT documentChanged();
 }
 
 void Workspace::setAside(int id) {
@@ -160,8 +164,10 @@ void Workspace::bringBack() {
 int Workspace::addGroup(MotionGroup group) {
   group.id = m_nextGroup++;
   const int id = group.id;
+  const bool kept = group.pinned && group.recipe;
   m_groups.push_back(std::move(group));
   tellMotions();
+  if (kept) Q_EMIT documentChanged();
   return id;
 }
 

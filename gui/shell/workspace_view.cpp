@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "shell/workspace.h"
+#include <fmt/format.h>
 
 #include "base/error.h"
 
@@ -53,6 +54,7 @@ void Workspace::takeView(ViewState view) {
   m_naturalShown = view.natural;
   m_hidden.clear();
   m_offered = view.sets;
+  m_savedPins = pinnedSets();
   m_comparison = view.comparison;
   Q_EMIT documentChanged();  // ticks
   Q_EMIT comparisonChanged();
@@ -116,6 +118,22 @@ std::vector<KeptSet> Workspace::keptSets() const {
   return out;
 }
 
+std::vector<std::string> Workspace::pinnedSets() const {
+  std::vector<std::string> out;
+  const auto add = [&](const ExperimentSystem& system, const ExperimentPath& path, int samples,
+                       uint64_t seed) {
+    out.push_back(fmt::format("{}\n{}\n{}\n{}\n{}", system.name, system.temperature, path.name,
+                              samples, seed));
+  };
+  for (const MotionGroup& group : m_groups)
+    if (group.pinned && group.recipe)
+      add(group.recipe->system, group.recipe->path, group.recipe->samples, group.recipe->seed);
+  for (const KeptSet& set : m_offered)
+    if (set.pinned) add(set.system, set.path, set.samples, set.seed);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 void Workspace::hideAsKept(MotionGroup& group) {
   const auto hidden = m_hidden.find(group.id);
   if (hidden == m_hidden.end()) return;
@@ -134,11 +152,13 @@ void Workspace::sampleOffered() {
     group.pinned = set.pinned;
     m_hidden[group.id] = set.hidden;
   }
+  Q_EMIT documentChanged();
 }
 
 void Workspace::dismissOffered() {
   m_offered.clear();
   Q_EMIT offeredChanged();
+  Q_EMIT documentChanged();  // it may have been pinned
 }
 
 void Workspace::setComparison(Comparison comparison) {

@@ -139,6 +139,25 @@ TEST_F(KeptView, SetsAreOfferedAndComeBackBitForBit) {
   EXPECT_EQ(m_workspace->groups()[2].colourIndex, 15);
 }
 
+TEST_F(KeptView, PinningASetIsAChangeOfTheDocument) {
+  m_workspace->save(QString::fromStdString(file("x.json").string()));
+  m_workspace->sampleCurrentPath();
+  ASSERT_TRUE(idle());
+  EXPECT_FALSE(m_window->isWindowModified()) << "what can be sampled again is nothing to lose";
+  m_workspace->setPinned(m_workspace->groups().back().id, true);
+  EXPECT_TRUE(m_window->isWindowModified());
+  m_workspace->setPinned(m_workspace->groups().back().id, false);
+  EXPECT_FALSE(m_window->isWindowModified());
+  m_workspace->setPinned(m_workspace->groups().back().id, true);
+  ASSERT_NO_FATAL_FAILURE(saveAndOpen(file("x.json")));
+  EXPECT_FALSE(m_window->isWindowModified());
+  child<QPushButton>(*m_window, "offerSample")->click();
+  ASSERT_TRUE(idle());
+  EXPECT_FALSE(m_window->isWindowModified()) << "it is as it was saved";
+  m_workspace->removeGroup(m_workspace->groups().back().id);
+  EXPECT_TRUE(m_window->isWindowModified());
+}
+
 TEST_F(KeptView, SetsThatWereNotDrawnAgainStayInTheDocumentUntilTheyAreLeftOut) {
   m_workspace->sampleCurrentPath();
   ASSERT_TRUE(idle());

@@ -126,7 +126,8 @@ void moveToFolder(Experiment& experiment, const fs::path& folder) {
     for (ShownClips& shown : *view.natural) shown.source = moved(shown.source, from, folder);
   for (KeptSet& set : view.sets) {
     set.system.model = moved(set.system.model, from, folder);
-    set.path.path = moved(set.path.path, from, folder);
+    // The path of held-out control is a word, no file.
+    if (!set.heldOut) set.path.path = moved(set.path.path, from, folder);
   }
   view.trainingRun = moved(view.trainingRun, from, folder);
   experiment.folder = folder;

@@ -149,6 +149,7 @@ void Workspace::save(const QString& file) {
   const fs::path path = file.toStdString();
   moveToFolder(moved, fs::absolute(path).parent_path());
   writeExperiment(path, moved);
+  if (moved.view.natural) renameSources(*moved.view.natural);
   moved.view = {};
   m_file = file;
   m_saved = moved;

@@ -177,6 +177,9 @@ class Workspace : public QObject {
   // Workspace_view.cpp
   void takeView(ViewState view);
   std::vector<ShownClips> shownClips() const;
+  void renameSources(const std::vector<ShownClips>& shown);
+  /// The same with names that start at the document's folder.
+  SampleRecipe recipeHere(const SampleRecipe& recipe) const;
   std::vector<KeptSet> keptSets() const;
   /// What tells pinned sets apart, drawn or offered; sorted.
   std::vector<std::string> pinnedSets() const;
@@ -217,7 +220,8 @@ class Workspace : public QObject {
   Selection m_selection;
   Comparison m_comparison = Comparison::ThisPath;
   std::vector<KeptSet> m_offered;
-  std::vector<std::string> m_savedPins;  ///< pinnedSets() of what was opened or saved
+  std::filesystem::path m_offeredFolder;  ///< where their names start
+  std::vector<std::string> m_savedPins;   ///< pinnedSets() of what was opened or saved
   /// What is to be shown of natural motion when it is read; none: as before, and a few of new ones.
   std::optional<std::vector<ShownClips>> m_naturalShown;
   std::map<int, std::vector<int>> m_hidden;  ///< motions of groups being drawn that stay hidden

@@ -66,7 +66,7 @@ std::vector<int> Workspace::usedNatural() const {
 const MotionGroup* Workspace::groupLike(const SampleRecipe& recipe) const {
   const std::string stamp = stampOf(recipe);
   const auto found = std::find_if(m_groups.begin(), m_groups.end(), [&](const MotionGroup& g) {
-    return g.recipe && *g.recipe == recipe && g.complete && g.modelStamp == stamp;
+    return g.recipe && g.complete && recipeHere(*g.recipe) == recipe && g.modelStamp == stamp;
   });
   return found == m_groups.end() ? nullptr : &*found;
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "experiment/edits.h"
 
 namespace marey::gui {
 namespace {
@@ -21,6 +22,16 @@ bool canBeKept(const KeptSet& set) {
   } catch (const InputError&) {
     return false;  // a steered motion of one frame has no path, for example
   }
+}
+
+/// Saving in another folder names files from there.
+KeptSet inFolder(KeptSet set, const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (from == to) return set;
+  Experiment carrier;
+  carrier.folder = from;
+  carrier.view.sets = {std::move(set)};
+  moveToFolder(carrier, to);
+  return carrier.view.sets.front();
 }
 
 }  // namespace
@@ -54,6 +65,7 @@ void Workspace::takeView(ViewState view) {
   m_naturalShown = view.natural;
   m_hidden.clear();
   m_offered = view.sets;
+  m_offeredFolder = experiment().folder;
   m_savedPins = pinnedSets();
   m_comparison = view.comparison;
   Q_EMIT documentChanged();  // ticks
@@ -76,6 +88,20 @@ std::vector<ShownClips> Workspace::shownClips() const {
     }
   }
   return out;
+}
+
+/// Natural clips by what the document calls their sources now; `shown` is as shownClips().
+void Workspace::renameSources(const std::vector<ShownClips>& shown) {
+  for (MotionGroup& group : m_groups) {
+    if (!group.natural()) continue;
+    size_t at = 0;
+    std::string before;
+    for (size_t i = 0; i < group.motions.size(); ++i) {
+      std::string& source = group.motions[i].source;
+      if (i > 0 && source != before) ++at;
+      before = std::exchange(source, shown[at].source);
+    }
+  }
 }
 
 /// Clips of a source that was there keep their ticks; of new ones the first few are shown.
@@ -106,7 +132,7 @@ std::vector<KeptSet> Workspace::keptSets() const {
   std::vector<KeptSet> out;
   for (const MotionGroup& group : m_groups) {
     if (!group.recipe) continue;
-    KeptSet set = keptSetOf(*group.recipe);
+    KeptSet set = keptSetOf(recipeHere(*group.recipe));
     set.pinned = group.pinned;
     if (systemIndex(group.system) < 0) set.colour = group.colourIndex;
     for (size_t i = 0; i < group.motions.size(); ++i)
@@ -114,8 +140,14 @@ std::vector<KeptSet> Workspace::keptSets() const {
     if (canBeKept(set)) out.push_back(std::move(set));
   }
   // What was not drawn again is not given up by saving.
-  out.insert(out.end(), m_offered.begin(), m_offered.end());
+  for (const KeptSet& set : m_offered)
+    out.push_back(inFolder(set, m_offeredFolder, experiment().folder));
   return out;
+}
+
+SampleRecipe Workspace::recipeHere(const SampleRecipe& recipe) const {
+  const std::filesystem::path& here = experiment().folder;
+  return recipeOf(inFolder(keptSetOf(recipe), recipe.folder, here), recipe.fps, here);
 }
 
 std::vector<std::string> Workspace::pinnedSets() const {
@@ -144,15 +176,20 @@ void Workspace::hideAsKept(MotionGroup& group) {
 
 void Workspace::sampleOffered() {
   const std::vector<KeptSet> sets = std::exchange(m_offered, {});
-  Q_EMIT offeredChanged();
   for (const KeptSet& set : sets) {
-    const SampleRecipe recipe = recipeOf(set, experiment().fps, experiment().folder);
+    if (set.heldOut && usedNatural().empty()) {
+      m_offered.push_back(set);
+      continue;
+    }
+    const SampleRecipe recipe = recipeHere(recipeOf(set, experiment().fps, m_offeredFolder));
     sample(recipe, -1, set.colour);
     MotionGroup& group = m_groups.back();
     group.pinned = set.pinned;
     m_hidden[group.id] = set.hidden;
   }
+  Q_EMIT offeredChanged();
   Q_EMIT documentChanged();
+  if (!m_offered.empty()) Q_EMIT noticed(tr("Held-out control needs natural clips that are read"));
 }
 
 void Workspace::dismissOffered() {

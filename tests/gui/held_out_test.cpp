@@ -150,6 +150,28 @@ TEST_F(HeldOut, GoesWithTheNaturalMotionThatItFollows) {
   EXPECT_EQ(m_workspace->withoutHeldOut().size(), 1U);
 }
 
+TEST_F(HeldOut, ComesBackWithTheDocumentOnceNaturalMotionIsRead) {
+  m_workspace->setComparison(Comparison::HeldOut);
+  m_workspace->sampleHeldOut();
+  ASSERT_TRUE(idle());
+  const MotionGroup drawn = m_workspace->groups().back();
+  const auto saved = std::filesystem::path(m_folder.path().toStdString()) / "x.json";
+  m_workspace->save(QString::fromStdString(saved.string()));
+  m_workspace->open(readExperiment(saved), QString::fromStdString(saved.string()));
+  EXPECT_EQ(m_workspace->comparison(), Comparison::HeldOut);
+  m_workspace->sampleOffered();  // too early: there is nothing to follow yet
+  EXPECT_EQ(m_workspace->offered().size(), 1U);
+  ASSERT_TRUE(idle());
+  m_workspace->sampleOffered();
+  ASSERT_TRUE(idle());
+  EXPECT_TRUE(m_workspace->offered().empty());
+  const MotionGroup& back = m_workspace->groups().back();
+  ASSERT_EQ(back.motions.size(), drawn.motions.size());
+  for (size_t i = 0; i < back.motions.size(); ++i)
+    EXPECT_EQ(back.motions[i].clip->positions, drawn.motions[i].clip->positions);
+  EXPECT_TRUE(m_workspace->withoutHeldOut().empty());
+}
+
 TEST_F(HeldOut, WhatWouldComeOutTheSameIsNotSampledAgain) {
   m_workspace->sampleCurrentPath();
   ASSERT_TRUE(idle());

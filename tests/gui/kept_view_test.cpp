@@ -192,6 +192,34 @@ TEST_F(KeptView, ADocumentThatIsMovedWithItsDataOpens) {
   EXPECT_EQ(m_workspace->groups().size(), 2U);
 }
 
+TEST_F(KeptView, SavingInAnotherFolderForgetsNeitherSetsNorTicks) {
+  const auto walks = walkerFiles("study/walks", 3);
+  m_workspace->edit("Study", [&](Experiment& e) { e.natural = walks; });
+  ASSERT_TRUE(idle());
+  m_workspace->setVisible(m_workspace->groups().front().id, false);
+  m_workspace->setVisible(MotionId{m_workspace->groups().front().id, 2}, true);
+  m_workspace->sampleCurrentPath();
+  m_workspace->sampleHeldOut();
+  ASSERT_TRUE(idle());
+  const MotionGroup drawn = m_workspace->groups()[1];
+  m_workspace->save(QString::fromStdString(file("study/x.json").string()));
+  EXPECT_EQ(m_workspace->groups().front().motions[2].source, m_workspace->experiment().natural[2]);
+  EXPECT_TRUE(m_workspace->withoutHeldOut().empty()) << "nothing in it has changed";
+  fs::create_directories(file("other"));
+  ASSERT_NO_FATAL_FAILURE(saveAndOpen(file("other/y.json")));
+  EXPECT_EQ(naturalTicks(), (std::vector<bool>{false, false, true}));
+  ASSERT_NO_FATAL_FAILURE(saveAndOpen(file("study/z.json")));
+  child<QPushButton>(*m_window, "offerSample")->click();
+  ASSERT_TRUE(idle());
+  EXPECT_TRUE(m_errors.empty()) << m_errors.front();
+  ASSERT_EQ(m_workspace->groups().size(), 3U);
+  const MotionGroup& back = m_workspace->groups()[1];
+  ASSERT_EQ(back.motions.size(), drawn.motions.size());
+  EXPECT_EQ(back.motions[0].clip->positions, drawn.motions[0].clip->positions);
+  EXPECT_EQ(m_workspace->groups()[2].motions.size(), 3U);
+  EXPECT_TRUE(m_workspace->withoutHeldOut().empty());
+}
+
 TEST_F(KeptView, ThirtyFilesAreOneGroupAndRemovingOneLeavesTheTicksOfOthers) {
   const auto files = walkerFiles("walks", 30);
   m_workspace->edit("Files", [&](Experiment& e) { addNatural(e, files); });

@@ -63,9 +63,10 @@ struct NaturalMotion {
 /// As naturalClips, but a file that cannot be read costs only its own clips. Throws CancelledError.
 NaturalMotion readableNatural(const Experiment& experiment, Progress& progress);
 /// Samples `heldOutSamples` motions along the control of every natural clip with `out`'s
-/// temperature, in the clips' order; fills `out.heldOut`, its paths, its scores (of motions that
-/// are longer than the model's context) and the speed. A report and a window get the same motions.
-/// `natural` has the experiment's rate. Throws InputError, NumericError and CancelledError.
+/// temperature, in the clips' order; fills `out.heldOut`, its paths, its scores (empty for motions
+/// that are no longer than the model's context) and the speed. A report and a window get the same
+/// motions. `natural` has the experiment's rate. Throws InputError, NumericError and
+/// CancelledError.
 void sampleHeldOut(const MotionModel& model, const Experiment& experiment,
                    const std::vector<Clip>& natural, SystemResult& out, Progress& progress,
                    Ranks& ranks);

@@ -13,22 +13,17 @@ namespace marey::gui {
 namespace {
 
 /// `followed`: indices of the natural motions, `samples` motions along each.
-std::vector<Motion> heldOutMotions(SystemResult&& result, int context,
-                                   const std::vector<int>& followed, int samples) {
+std::vector<Motion> heldOutMotions(SystemResult&& result, const std::vector<int>& followed,
+                                   int samples) {
   std::vector<Motion> out;
-  size_t scored = 0;
   for (size_t i = 0; i < result.heldOut.size(); ++i) {
-    // Motions that are all context have no score.
-    const bool has =
-        result.heldOut[i].frameCount() > context && scored < result.heldOutScores.size();
-    out.push_back(
-        {.clip = std::make_shared<const Clip>(std::move(result.heldOut[i])),
-         .score = has ? std::optional(std::move(result.heldOutScores[scored++])) : std::nullopt,
-         .visible = false,
-         .source = {},
-         .wanted =
-             std::make_shared<const std::vector<RootFrame>>(std::move(result.heldOutPaths[i])),
-         .follows = followed[i / static_cast<size_t>(samples)]});
+    out.push_back({.clip = std::make_shared<const Clip>(std::move(result.heldOut[i])),
+                   .score = std::move(result.heldOutScores[i]),
+                   .visible = false,
+                   .source = {},
+                   .wanted = std::make_shared<const std::vector<RootFrame>>(
+                       std::move(result.heldOutPaths[i])),
+                   .follows = followed[i / static_cast<size_t>(samples)]});
   }
   return out;
 }
@@ -124,8 +119,7 @@ Job::Work Workspace::heldOutWork(const SampleRecipe& recipe, int id) {
                         .temperature = recipe.system.temperature};
     Ranks alone;
     marey::sampleHeldOut(*weights, e, natural, result, progress, alone);
-    auto motions =
-        heldOutMotions(std::move(result), weights->info().context, followed, recipe.samples);
+    auto motions = heldOutMotions(std::move(result), followed, recipe.samples);
     QMetaObject::invokeMethod(
         self.data(),
         [self, id, motions = std::move(motions)]() mutable {

@@ -95,8 +95,9 @@ Json withoutView(const Experiment& e) {
 
 bool Experiment::operator==(const Experiment& other) const {
   const auto key = [](const Experiment& e) {
-    return std::tie(e.title, e.notes, e.natural, e.systems, e.paths, e.samples, e.heldOutSamples,
-                    e.seed, e.fps, e.feet, e.toleranceStepCmS, e.against, e.folder);
+    return std::tie(e.title, e.notes, e.natural, e.naturalLeftOut, e.systems, e.paths, e.samples,
+                    e.heldOutSamples, e.seed, e.fps, e.feet, e.toleranceStepCmS, e.against,
+                    e.folder);
   };
   return key(*this) == key(other);
 }

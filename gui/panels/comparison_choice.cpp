@@ -2,7 +2,6 @@
 
 #include <QComboBox>
 #include <QHBoxLayout>
-#include <QLabel>
 #include <QPushButton>
 
 #include "shell/workspace.h"
@@ -19,8 +18,26 @@ QString listed(const std::vector<std::string>& names) {
 size_t naturalClips(const Workspace& workspace) {
   size_t out = 0;
   for (const MotionGroup& group : workspace.groups())
-    if (group.natural()) out += group.motions.size();
+    for (const Motion& motion : group.motions) out += group.natural() && motion.used ? 1 : 0;
   return out;
+}
+
+QString naturalText(const Workspace& workspace) {
+  const size_t clips = naturalClips(workspace);
+  if (clips == 0) return ComparisonChoice::tr("No natural motion to compare with");
+  if (workspace.comparison() == Comparison::ThisPath)
+    return clips == 1
+               ? ComparisonChoice::tr("Compared with the one natural clip, on a path of its own")
+               : ComparisonChoice::tr("Compared with all %1 natural clips, on paths of their own")
+                     .arg(clips);
+  const auto missing = workspace.withoutHeldOut();
+  const QString natural =
+      clips == 1
+          ? ComparisonChoice::tr("Compared with the natural clip whose control is followed")
+          : ComparisonChoice::tr("Compared with all %1 natural clips, whose control is followed")
+                .arg(clips);
+  if (missing.empty() || workspace.sampling()) return natural;
+  return ComparisonChoice::tr("%1 · missing or out of date: %2").arg(natural, listed(missing));
 }
 
 }  // namespace
@@ -33,16 +50,16 @@ ComparisonChoice::ComparisonChoice(Workspace& workspace, const QString& name, QW
   m_choice->setToolTip(
       tr("This path: the motions that were sampled along a path. Held-out control: motions along "
          "the control of every natural clip, which is what a report counts."));
-  m_sample = new QPushButton(tr("Sample held-out control"), this);
+  m_choice->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  m_choice->setMinimumContentsLength(8);
+  m_sample = new QPushButton(tr("Sample"), this);
+  m_sample->setToolTip(tr("Samples along the control of every natural clip"));
   m_sample->setObjectName(name + QStringLiteral("HeldOut"));
-  m_natural = new QLabel(this);
-  m_natural->setObjectName(name + QStringLiteral("Natural"));
-  m_natural->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   auto* row = new QHBoxLayout(this);
   row->setContentsMargins(0, 0, 0, 0);
   row->addWidget(m_choice);
   row->addWidget(m_sample);
-  row->addWidget(m_natural, 1);
+  row->addStretch(1);
   connect(m_choice, qOverload<int>(&QComboBox::activated), this, [this](int index) {
     m_workspace.setComparison(static_cast<Comparison>(index));
     // Asking for the comparison is asking for its motions.
@@ -61,22 +78,14 @@ QString ComparisonChoice::missingText(const Workspace& workspace) {
     return tr("Held-out control is that of natural clips, and the document has none.");
   if (workspace.sampling()) return tr("Sampling along the control of every natural clip…");
   if (missing.empty()) return tr("The document has no model that is ticked in Sampling.");
-  return tr("No motions along held-out control yet: press “Sample held-out control” (%1).")
+  return tr("No motions along held-out control yet: press “Sample” above (%1).")
       .arg(listed(missing));
 }
 
-QString ComparisonChoice::naturalText() const {
-  const size_t clips = naturalClips(m_workspace);
-  if (clips == 0) return tr("No natural motion to compare with");
-  if (m_workspace.comparison() == Comparison::ThisPath)
-    return clips == 1 ? tr("Compared with the one natural clip, on a path of its own")
-                      : tr("Compared with all %1 natural clips, on paths of their own").arg(clips);
-  const auto missing = m_workspace.withoutHeldOut();
-  const QString natural =
-      clips == 1 ? tr("Compared with the natural clip whose control is followed")
-                 : tr("Compared with all %1 natural clips, whose control is followed").arg(clips);
-  if (missing.empty() || m_workspace.sampling()) return natural;
-  return tr("%1 · missing or out of date: %2").arg(natural, listed(missing));
+std::vector<std::string> ComparisonChoice::notes(const Workspace& workspace,
+                                                 std::vector<std::string> others) {
+  others.insert(others.begin(), naturalText(workspace).toStdString());
+  return others;
 }
 
 void ComparisonChoice::refresh() {
@@ -85,8 +94,6 @@ void ComparisonChoice::refresh() {
   m_sample->setVisible(heldOut);
   m_sample->setEnabled(!m_workspace.sampling() && naturalClips(m_workspace) > 0 &&
                        !m_workspace.withoutHeldOut().empty());
-  m_natural->setText(naturalText());
-  m_natural->setToolTip(naturalText());
 }
 
 }  // namespace marey::gui

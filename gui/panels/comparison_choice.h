@@ -1,10 +1,11 @@
-// Chooses along what motions are compared with nature, and says which natural motion that is.
+// Chooses along what motions are compared with nature.
 #pragma once
 
 #include <QWidget>
+#include <string>
+#include <vector>
 
 class QComboBox;
-class QLabel;
 class QPushButton;
 
 namespace marey::gui {
@@ -15,19 +16,20 @@ class Workspace;
 class ComparisonChoice : public QWidget {
   Q_OBJECT
  public:
-  /// `name` starts the object names: NAMECompare, NAMEHeldOut, NAMENatural.
+  /// `name` starts the object names: NAMECompare, NAMEHeldOut.
   ComparisonChoice(Workspace& workspace, const QString& name, QWidget* parent);
   /// What held-out plots show where there is nothing to show yet.
   static QString missingText(const Workspace& workspace);
+  /// Which natural motion is compared with and whose motions are missing, before other notes.
+  static std::vector<std::string> notes(const Workspace& workspace,
+                                        std::vector<std::string> others = {});
 
  private:
   void refresh();
-  QString naturalText() const;
 
   Workspace& m_workspace;
   QComboBox* m_choice = nullptr;
   QPushButton* m_sample = nullptr;
-  QLabel* m_natural = nullptr;
 };
 
 }  // namespace marey::gui

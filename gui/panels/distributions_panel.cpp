@@ -54,7 +54,7 @@ class DistributionsPanel : public PlotPanel {
   void refresh() override {
     m_sets = motionSets(workspace().groups(), comparison());
     const auto& sets = m_sets;
-    showCounted(sets);
+    showCounted(sets, ComparisonChoice::notes(workspace()));
     if (nothingHeldOut(sets)) return showHint(ComparisonChoice::missingText(workspace()));
     if (sets.empty())
       return showHint(
@@ -178,7 +178,7 @@ class DistributionsPanel : public PlotPanel {
     for (const DistributionSet& set : m_result->sets)
       if (!set.look.natural) m_mapSet->addItem(QString::fromStdString(set.look.name));
     m_mapSet->setCurrentIndex(std::max(0, m_mapSet->findText(before)));
-    showCounted(m_sets, m_result->leftOut);
+    showCounted(m_sets, ComparisonChoice::notes(workspace(), m_result->leftOut));
     redraw();
     showMap();
     fillTable();

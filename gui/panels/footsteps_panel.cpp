@@ -33,7 +33,7 @@ class FootstepsPanel : public PlotPanel {
   void refresh() override {
     m_sets = motionSets(workspace().groups(), comparison());
     const auto& sets = m_sets;
-    showCounted(sets);
+    showCounted(sets, ComparisonChoice::notes(workspace()));
     if (nothingHeldOut(sets)) return showHint(ComparisonChoice::missingText(workspace()));
     if (sets.empty())
       return showHint(
@@ -52,7 +52,7 @@ class FootstepsPanel : public PlotPanel {
         },
         [this](Counted& counted) {
           m_results = std::move(counted.first);
-          showCounted(m_sets, counted.second);
+          showCounted(m_sets, ComparisonChoice::notes(workspace(), counted.second));
           show();
         });
   }

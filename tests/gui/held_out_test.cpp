@@ -63,13 +63,13 @@ TEST_F(HeldOut, TheTableHasTheNumbersOfTheReport) {
   ASSERT_TRUE(idle());
   ASSERT_EQ(m_workspace->groups().size(), 2U);
   EXPECT_EQ(m_workspace->groups().back().motions.size(), 12U);
-  EXPECT_TRUE(child<QLabel>(*m_window, "statisticsNatural")->text().contains("6 natural clips"));
   auto* compute = child<QPushButton>(*m_window, "statisticsCompute");
   ASSERT_TRUE(waitUntil([&] { return compute->isEnabled(); }, 5.0));
   compute->click();
   auto* shown = child<QTableWidget>(*m_window, "statisticsTable");
   ASSERT_TRUE(waitUntil([&] { return shown->rowCount() > 0 && m_jobs->idle(); }, 120.0));
 
+  EXPECT_TRUE(child<QLabel>(*m_window, "statisticsInput")->text().contains("6 natural clips"));
   const ExperimentResult result = asReported();
   const auto& heldOut = result.systems.front().heldOut;
   for (size_t i = 0; i < heldOut.size(); ++i)
@@ -137,7 +137,8 @@ TEST_F(HeldOut, OneChoiceHoldsInEveryPanelAndSaysWhatIsMissing) {
   EXPECT_FALSE(sample->isEnabled()) << "there is nothing to be sampled again";
   m_workspace->edit("Warmer", [](Experiment& e) { e.systems.front().temperature = 0.5; });
   EXPECT_TRUE(sample->isEnabled());
-  EXPECT_TRUE(child<QLabel>(*m_window, "distributionsNatural")->text().contains("out of date"));
+  const auto* counted = child<QLabel>(*m_window, "distributionsCounted");
+  EXPECT_TRUE(waitUntil([&] { return counted->text().contains("out of date"); }, 30.0));
 }
 
 TEST_F(HeldOut, GoesWithTheNaturalMotionThatItFollows) {

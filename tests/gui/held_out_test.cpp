@@ -103,24 +103,27 @@ TEST_F(HeldOut, FootstepsAreThoseOfTheReportAndThePathIsAnotherChoice) {
   ASSERT_TRUE(idle());
   m_window->showPanel("footsteps");
   auto* shown = child<QTableWidget>(*m_window, "footstepsTable");
-  const auto v95 = [&](const char* set) {
+  constexpr int kSteps = 2, kV95 = 4;
+  const auto cell = [&](const char* set, int column) {
     for (int row = 0; row < shown->rowCount(); ++row)
       if (shown->item(row, 0)->text().startsWith(QLatin1String(set)) &&
           shown->item(row, 1)->text() == "all")
-        return numberAt(*shown, row, 4);
+        return numberAt(*shown, row, column);
     return std::nan("");
   };
   const std::string system = m_workspace->experiment().systems.front().name;
   ASSERT_TRUE(waitUntil([&] { return shown->rowCount() == 6 && m_jobs->idle(); }, 30.0));
-  const double onPath = v95(system.c_str());
+  // Speeds may agree; as many steps along six clips as along one path would be chance.
+  const double onPath = cell(system.c_str(), kSteps);
   choose("footstepsCompare", 1);
-  ASSERT_TRUE(waitUntil([&] { return m_jobs->idle() && v95(system.c_str()) != onPath; }, 120.0));
+  ASSERT_TRUE(
+      waitUntil([&] { return m_jobs->idle() && cell(system.c_str(), kSteps) != onPath; }, 120.0));
   const report::Table table = report::footstepTable(asReported());
   const auto column = static_cast<size_t>(columnNamed(table, "v95"));
-  EXPECT_EQ(v95("Natural"), table.rows[0][column].number);
-  EXPECT_EQ(v95(system.c_str()), table.rows[1][column].number);
+  EXPECT_EQ(cell("Natural", kV95), table.rows[0][column].number);
+  EXPECT_EQ(cell(system.c_str(), kV95), table.rows[1][column].number);
   choose("footstepsCompare", 0);
-  EXPECT_TRUE(waitUntil([&] { return v95(system.c_str()) == onPath; }, 30.0));
+  EXPECT_TRUE(waitUntil([&] { return cell(system.c_str(), kSteps) == onPath; }, 30.0));
 }
 
 TEST_F(HeldOut, OneChoiceHoldsInEveryPanelAndSaysWhatIsMissing) {

@@ -268,7 +268,13 @@ TEST(Likelihoods, ModelsOfOtherSkeletonsHaveTheirOwnAxisAndWorstFrame) {
   EXPECT_EQ(systemsIn(scored), (std::vector<std::string>{"MG", "Dog"}));
   EXPECT_EQ(worstFrame(scored, std::nullopt, "MG")->id, (MotionId{2, 0}));
   EXPECT_EQ(worstFrame(scored, std::nullopt, "Dog")->id, (MotionId{3, 0}));
-  const LinkedGrid grid = likelihoodGrid(scored, {{"MG", 1.5}, {"Dog", -950.0}}, false);
+  const auto rule = [](const char* system, double nats) {
+    LikelihoodRow row{
+        .name = "natural", .system = system, .natural = true, .summary = {}, .floor = {}};
+    row.summary.linearGaussian = nats;
+    return row;
+  };
+  const LinkedGrid grid = likelihoodGrid(scored, {rule("MG", 1.5), rule("Dog", -950.0)}, false);
   ASSERT_GE(grid.grid.charts.size(), 2U);
   for (const double nats : grid.grid.charts[0].series.back().y) EXPECT_GT(nats, -100.0);
   const auto frames = render::framesOf(grid.grid, {600, 500});

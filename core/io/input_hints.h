@@ -12,7 +12,8 @@ namespace marey::io {
 std::optional<std::filesystem::path> otherSpelling(const std::filesystem::path& folder,
                                                    const std::string& name);
 /// " (did you mean OTHER?)" for a file of the same name with an extension or in other letters, in
-/// the name's folder or in one beside it; else empty. OTHER is relative to `folder`.
+/// the name's folder, in `folder`, below it or beside it; else empty. OTHER is relative to
+/// `folder`.
 std::string nearestName(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace marey::io

@@ -4,6 +4,14 @@
 #include "io/clip_io.h"
 
 namespace marey::io {
+namespace {
+
+/// What is missing from a clip is told of every one.
+bool isLoss(const Doubt& doubt) {
+  return doubt.kind == "frame_count" || doubt.kind == "left_out";
+}
+
+}  // namespace
 
 InputReport::InputReport(const Inputs& inputs) : m_inputs(inputs) {
   m_inputs.files.clear();
@@ -74,7 +82,7 @@ std::vector<std::string> InputReport::remarks() const {
   std::vector<std::string> out = m_inputs.remarks();
   std::map<std::string, int> counts;
   for (const Doubt& doubt : m_doubts)
-    if (counts[doubt.kind]++ < kMostOfAKind)
+    if (isLoss(doubt) || counts[doubt.kind]++ < kMostOfAKind)
       out.push_back(
           fmt::format("{}: {}", doubt.path.empty() ? doubt.clip : doubt.path, doubt.text));
   for (const auto& [kind, count] : counts)

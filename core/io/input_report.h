@@ -32,7 +32,8 @@ class InputReport {
   /// Throws InputError with every reason where files were read and gave no clip at all.
   void throwIfNone(size_t clips) const;
   const std::vector<Doubt>& doubts() const { return m_doubts; }
-  /// Sentences for people; those of one kind after the third are counted only.
+  /// Sentences for people; those of one kind after the third are counted only, but for what is
+  /// missing from a clip.
   std::vector<std::string> remarks() const;
   /// Adds "not_read", "other_files" (see Inputs::addTo) and "warnings" [{path, clip, kind,
   /// evidence}] where there are any.

@@ -205,7 +205,7 @@ def without_pace(files, name):
 
 class RanksResume(RanksCase):
     """Enough motions, long enough, that a run can be broken in its midst."""
-    COUNT, SECONDS = 48, 1
+    COUNT, SECONDS = 96, 4
 
     def words(self, out, *more):
         return self.sample_words(out, self.COUNT, self.SECONDS, "--quiet", *more)

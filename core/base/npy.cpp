@@ -14,9 +14,10 @@ std::vector<std::byte> rowMajor(std::string_view bytes, const NpyHeader& header,
   const size_t item = header.itemBytes;
   const auto count = static_cast<size_t>(header.count());
   std::vector<std::byte> out(count * item);
+  if (out.empty()) return out;  // no values, or texts without a letter
   const auto rank = header.shape.size();
   if (!header.fortranOrder || rank < 2) {
-    if (!out.empty()) std::memcpy(out.data(), bytes.data(), out.size());
+    std::memcpy(out.data(), bytes.data(), out.size());
   } else {
     std::vector<int64_t> index(rank, 0);
     for (size_t i = 0; i < count; ++i) {

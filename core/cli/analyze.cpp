@@ -94,6 +94,8 @@ std::string statisticsText(const std::vector<stats::StatisticResult>& results, b
 std::string headText(const ClipStatistics& found) {
   std::string text = fmt::format("{} clips, {:.1f} s at {} frames per second\n", found.clips,
                                  found.seconds, found.fps);
+  if (const std::string missing = found.inputs.missingText(); !missing.empty())
+    text += missing + "\n";
   if (found.compared) text += "compared with " + found.comparedWith + "\n";
   if (!found.footsteps) return text + "no feet: choose them with --feet to count footsteps\n\n";
   std::string names;

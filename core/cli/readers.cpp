@@ -48,6 +48,8 @@ std::vector<Clip> readAll(const io::Inputs& inputs, const io::ReadOptions& optio
 void tell(const Context& context, const io::InputReport& report) {
   if (context.quiet) return;
   for (const std::string& remark : report.remarks()) fmt::print(stderr, "marey: {}\n", remark);
+  if (const std::string missing = report.missingText(); !missing.empty())
+    fmt::print(stderr, "marey: {}\n", missing);
 }
 
 }  // namespace marey::cli

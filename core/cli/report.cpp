@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/experiment_command.h"
+#include "cli/readers.h"
 #include "report/experiment_report.h"
 
 namespace marey::cli {
@@ -32,13 +33,17 @@ void runReport(const Experiment& experiment, const std::string& out, bool pdf,
   for (const LeftOut& one : result.leftOut)
     text += fmt::format("\nleft out: {}: {}", one.what, one.why);
   text += files.pdf.empty() ? "\nno PDF: " + files.pdfNote : "\n" + files.pdf.string();
-  context.print({{"report", files.html.string()},
-                 {"pdf", files.pdf.string()},
-                 {"tables", tables},
-                 {"figures", figures},
-                 {"left_out", leftOut},
-                 {"experiment_hash", result.hash}},
-                text);
+  if (const std::string missing = report::missingText(result); !missing.empty())
+    text += "\n" + missing;
+  Json json = {{"report", files.html.string()},
+               {"pdf", files.pdf.string()},
+               {"tables", tables},
+               {"figures", figures},
+               {"left_out", leftOut},
+               {"experiment_hash", result.hash}};
+  result.inputs.addTo(json);
+  tell(context, result.inputs);
+  context.print(json, text);
 }
 
 namespace {

@@ -133,6 +133,16 @@ class Scores {
   std::vector<ClipScore> m_scores;
 };
 
+/// Clips of another skeleton than the model's are left out: the others are worth scoring.
+void leaveOthersOut(const ModelInfo& info, std::vector<Clip>& clips, io::InputReport& report) {
+  std::erase_if(clips, [&](const Clip& clip) {
+    std::string why = whyNotScored(info, clip);
+    if (why.empty()) return false;
+    report.leaveOut(clip, std::move(why));
+    return true;
+  });
+}
+
 /// The scores of files [first, last), packed file by file. Clips are read as they are scored.
 std::vector<std::string> scoreShare(const Options& o, const MotionModel& model,
                                     std::span<const io::InputFile> files, Progress& progress) {
@@ -145,6 +155,7 @@ std::vector<std::string> scoreShare(const Options& o, const MotionModel& model,
     progress.throwIfCancelled();
     std::vector<Clip> clips = reports.emplace_back().read(files[i], o.read);
     reports.back().throwIfFailed();
+    leaveOthersOut(model.info(), clips, reports.back());
     for (const Clip& clip : clips) reports.back().resample(clip, model.info().features.fps);
     clipsOf.push_back(clips.size());
     std::move(clips.begin(), clips.end(), std::back_inserter(waiting));

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <utility>
 
+#include "base/error.h"
 #include "base/packing.h"
-#include "io/clip_io.h"
+#include "motion/main_body.h"
 #include "motion/resample.h"
 #include "motion/roles.h"
 
@@ -20,42 +22,61 @@ size_t bytesOf(const Clip& clip) {
   return clip.positions.size() * (sizeof(Vec3) + each);
 }
 
+/// What tells bodies apart.
+std::string bodyOf(const Clip& clip) {
+  return fmt::format("{}", fmt::join(clip.skeleton->names, "\n"));
+}
+
+/// What a file gives.
+struct FileClips {
+  std::vector<Clip> clips;
+  std::vector<std::string> otherBodies;  ///< of the clips that are left out
+  io::InputReport report;                ///< of the first reading alone
+};
+
 /// The clips of files, each read when it is asked for.
 class ClipReader {
  public:
-  ClipReader(const ClipFiles& files, double fps, const Clip& first)
-      : m_files(files), m_fps(fps), m_first(first) {}
+  ClipReader(const ClipFiles& files, const Clip& first) : m_files(files), m_first(first) {}
 
   const std::vector<io::InputFile>& files() const { return m_files.files; }
 
-  /// Of one file, at the rate of the analysis; none of one that was found and cannot be read.
-  /// Throws InputError unless they are comparable.
-  std::vector<Clip> read(size_t file) {
-    io::InputReport unused;
-    return read(file, unused);
-  }
-  /// The same; `report` gets what is to be told of the file.
-  std::vector<Clip> read(size_t file, io::InputReport& report) {
-    if (const auto kept = m_kept.find(file); kept != m_kept.end()) return kept->second;
-    std::vector<Clip> clips = report.read(m_files.files[file], m_files.read);
-    report.throwIfFailed();
+  /// Of one file, at the rate of the analysis; none of one that was found and cannot be read. Clips
+  /// of another skeleton than the first one's are left out.
+  FileClips read(size_t file) {
+    FileClips out;
+    if (const auto kept = m_kept.find(file); kept != m_kept.end()) {
+      out.clips = kept->second;
+      return out;
+    }
+    out.clips = out.report.read(m_files.files[file], m_files.read);
+    out.report.throwIfFailed();
+    leaveOthersOut(out);
     size_t bytes = 0;
-    for (Clip& clip : clips) {
-      report.resample(clip, m_fps);
-      clip = resampled(clip, m_fps);
+    for (Clip& clip : out.clips) {
+      out.report.resample(clip, m_first.fps);
+      clip = resampled(clip, m_first.fps);
       stats::requireComparable(clip, m_first);
       bytes += bytesOf(clip);
     }
     if (m_keptBytes + bytes < kKeptBytes) {
       m_keptBytes += bytes;
-      m_kept[file] = clips;
+      m_kept[file] = out.clips;
     }
-    return clips;
+    return out;
   }
 
  private:
+  void leaveOthersOut(FileClips& from) const {
+    std::erase_if(from.clips, [&](const Clip& clip) {
+      if (clip.skeleton->names == m_first.skeleton->names) return false;
+      from.report.leaveOut(clip, otherJoints(*clip.skeleton, *m_first.skeleton));
+      from.otherBodies.push_back(bodyOf(clip));
+      return true;
+    });
+  }
+
   const ClipFiles& m_files;
-  double m_fps;
   const Clip& m_first;
   std::map<size_t, std::vector<Clip>> m_kept;
   size_t m_keptBytes = 0;
@@ -67,7 +88,19 @@ struct Overview {
   double seconds = 0.0;
   std::vector<size_t> clipsBefore;  ///< clips in the files before each file
   io::InputReport inputs;           ///< at the first rank only
+  std::string mainBody;             ///< that more clips have than the first one's; empty: none
 };
+
+/// Of those that were left out the body of most clips, where they are more than `used`; of equally
+/// many the first.
+std::string bodyOfMore(const std::vector<std::string>& others, size_t used) {
+  std::string out;
+  std::map<std::string, size_t> counts;
+  for (const std::string& body : others) ++counts[body];
+  for (const std::string& body : others)
+    if (counts[body] > used) used = counts[out = body];
+  return out;
+}
 
 /// Runs `work` on the files of a share, with progress.
 std::vector<std::string> eachFile(size_t first, size_t last, Progress& progress,
@@ -91,11 +124,12 @@ Overview overviewOf(ClipReader& reader, const std::vector<int>& feet, Ranks& ran
         stats::SetFacts heights;
         auto out = eachFile(first, last, share, [&](size_t file) {
           Packer packer;
-          io::InputReport report;
-          const std::vector<Clip> clips = reader.read(file, report);
-          report.pack(packer);
-          packer.add(clips.size());
-          for (const Clip& clip : clips) {
+          const FileClips found = reader.read(file);
+          found.report.pack(packer);
+          packer.add(found.otherBodies.size());
+          for (const std::string& body : found.otherBodies) packer.add(body);
+          packer.add(found.clips.size());
+          for (const Clip& clip : found.clips) {
             stats::SetFacts facts = stats::factsOf(clip, feet);
             heights.add({.footHeights = std::exchange(facts.footHeights, {})});
             packer.add(clip.seconds());
@@ -112,24 +146,28 @@ Overview overviewOf(ClipReader& reader, const std::vector<int>& feet, Ranks& ran
   io::InputReport inputs;
   const std::string told = ranks.fromFirst([&] {
     Overview all;
+    std::vector<std::string> others;
     for (const std::string& file : packed) {
       all.clipsBefore.push_back(all.facts.clips);
       Unpacker bytes(file);
       inputs.add(io::InputReport::unpacked(bytes));
+      for (auto more = bytes.number<size_t>(); more > 0; --more) others.push_back(bytes.text());
       for (auto clips = bytes.number<size_t>(); clips > 0; --clips) {
         all.seconds += bytes.number<double>();
         all.facts.add(stats::SetFacts::unpacked(bytes));
       }
       if (!bytes.done()) all.facts.add(stats::SetFacts::unpacked(bytes));
     }
+    inputs.throwIfNone(all.facts.clips);
     Packer packer;
-    packer.add(all.seconds).add(all.clipsBefore);
+    packer.add(bodyOfMore(others, all.facts.clips)).add(all.seconds).add(all.clipsBefore);
     all.facts.pack(packer);
     return packer.take();
   });
   Unpacker bytes(told);
   Overview out;
   out.inputs = std::move(inputs);
+  out.mainBody = bytes.text();
   out.seconds = bytes.number<double>();
   out.clipsBefore = bytes.list<size_t>();
   out.facts = stats::SetFacts::unpacked(bytes);
@@ -146,7 +184,7 @@ stats::StatisticSet partsOf(ClipReader& reader, const Overview& overview,
         return eachFile(first, last, share, [&](size_t file) {
           Packer packer;
           size_t index = overview.clipsBefore[file];
-          for (const Clip& clip : reader.read(file))
+          for (const Clip& clip : reader.read(file).clips)
             for (const auto& part : stats::partsOf(statistics, clip, index++, setting))
               packer.add(part);
           return packer.take();
@@ -217,17 +255,66 @@ void setControls(const ClipStatisticsRequest& request, const Overview& overview,
       });
 }
 
-/// Of the first file that can be read.
-Clip firstClip(const ClipFiles& clips) {
+/// Of the files that can be read the first clip that is wanted; the first of all where none is.
+Clip firstClip(const ClipFiles& clips, const std::function<bool(const Clip&)>& wanted) {
   io::InputReport report;
+  std::optional<Clip> first;
   for (const io::InputFile& file : clips.files) {
     const std::vector<Clip> found = report.read(file, clips.read);
     report.throwIfFailed();
-    if (!found.empty())
-      return resampled(found.front(), clips.fps > 0.0 ? clips.fps : found.front().fps);
+    const auto clip = std::find_if(found.begin(), found.end(), wanted);
+    if (!first && !found.empty()) first = found.front();
+    if (clip == found.end()) continue;
+    first = *clip;
+    break;
   }
-  report.throwIfNone(0);
-  throw InputError({.path = "inputs"}, "at least one clip", "none");
+  report.throwIfNone(first ? 1 : 0);
+  return resampled(*first, clips.fps > 0.0 ? clips.fps : first->fps);
+}
+
+std::vector<int> feetOf(const Clip& clip, const std::string& names) {
+  return names.empty() ? rolesOf(*clip.skeleton).feet : jointsByName(*clip.skeleton, names);
+}
+
+bool hasFeet(const Clip& clip, const std::string& names) {
+  try {
+    feetOf(clip, names);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  } catch (const UsageError&) {
+    return false;
+  }
+}
+
+/// The clips of one body, read for the first time.
+struct Reading {
+  Reading(const ClipFiles& files, Clip clip, const std::string& feetNames)
+      : first(std::move(clip)), feet(feetOf(first, feetNames)), reader(files, first) {}
+
+  const Clip first;
+  const std::vector<int> feet;
+  ClipReader reader;
+  Overview overview;
+};
+
+/// Of the body that most clips have: seldom another one than the first clip's, and then all are
+/// read again.
+std::unique_ptr<Reading> firstReading(const ClipStatisticsRequest& request, Ranks& ranks,
+                                      Progress& progress) {
+  std::string body;
+  for (;;) {
+    auto out = std::make_unique<Reading>(
+        request.clips,
+        firstClip(request.clips,
+                  [&](const Clip& clip) {
+                    return body.empty() ? hasFeet(clip, request.feet) : bodyOf(clip) == body;
+                  }),
+        request.feet);
+    out->overview = overviewOf(out->reader, out->feet, ranks, progress);
+    if (out->overview.mainBody.empty()) return out;
+    body = out->overview.mainBody;
+  }
 }
 
 /// 1.0 cm/s for people, 0.3 cm/s for dogs, as the papers have it.
@@ -240,8 +327,12 @@ double toleranceStep(const Skeleton& skeleton, double chosen) {
 
 ClipStatistics clipStatistics(const ClipStatisticsRequest& request, Ranks& ranks,
                               Progress& progress) {
-  const Clip first = firstClip(request.clips);
-  ClipReader reader(request.clips, first.fps, first);
+  Progress reading = progress.part(0.0, 0.3), naturalReading = progress.part(0.3, 0.4),
+           parting = progress.part(0.4, 0.6), naturalParting = progress.part(0.6, 0.7),
+           combining = progress.part(0.7, 1.0);
+  const std::unique_ptr<Reading> own = firstReading(request, ranks, reading);
+  const Clip& first = own->first;
+  const Overview& overview = own->overview;
   ClipStatistics out{.skeleton = first.skeleton, .fps = first.fps};
   out.compared = !request.natural.files.empty();
   ClipFiles naturalFiles = request.natural;
@@ -252,13 +343,8 @@ ClipStatistics clipStatistics(const ClipStatisticsRequest& request, Ranks& ranks
     for (const size_t i : chosen.clips) naturalFiles.files.push_back(request.natural.files[i]);
     out.comparedWith = chosen.text;
   }
-  ClipReader naturalReader(naturalFiles, first.fps, first);
-  out.feet = request.feet.empty() ? rolesOf(*first.skeleton).feet
-                                  : jointsByName(*first.skeleton, request.feet);
-  Progress reading = progress.part(0.0, 0.3), naturalReading = progress.part(0.3, 0.4),
-           parting = progress.part(0.4, 0.6), naturalParting = progress.part(0.6, 0.7),
-           combining = progress.part(0.7, 1.0);
-  const Overview overview = overviewOf(reader, out.feet, ranks, reading);
+  ClipReader naturalReader(naturalFiles, first);
+  out.feet = own->feet;
   const Overview naturalOverview =
       out.compared ? overviewOf(naturalReader, out.feet, ranks, naturalReading) : Overview{};
   stats::StatisticSetting setting{
@@ -270,7 +356,7 @@ ClipStatistics clipStatistics(const ClipStatisticsRequest& request, Ranks& ranks
       .natural = out.compared ? &naturalOverview.facts : nullptr};
   setControls(request, overview, naturalOverview, naturalFiles.files, setting);
   setting.completeReferences();
-  const auto set = partsOf(reader, overview, setting, ranks, parting);
+  const auto set = partsOf(own->reader, overview, setting, ranks, parting);
   std::optional<stats::StatisticSet> natural;
   if (out.compared)
     natural = partsOf(naturalReader, naturalOverview, setting.ofNatural(), ranks, naturalParting);

@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "experiment/run.h"
-#include "io/clip_io.h"
 #include "io/inputs.h"
 #include "motion/resample.h"
 #include "motion/walker.h"
@@ -27,25 +26,24 @@ std::vector<Clip> walkerClips(const std::string& source, const std::string& orig
   return out;
 }
 
-/// What is read at a time.
-struct Piece {
-  std::string source;
-  std::filesystem::path file;  ///< empty: the source is a walker
-};
-
-/// Told what is wrong with a source or file; throws, or goes on without it.
+/// Told of a source that gives no file; throws, or goes on without it.
 using OnFault = std::function<void(const Error&)>;
 
-std::vector<Piece> piecesOf(const Experiment& experiment, const OnFault& onFault) {
-  std::vector<Piece> out;
-  for (const std::string& source : experiment.natural) {
-    if (source.starts_with("walker:")) {
-      out.push_back({source, {}});
-      continue;
-    }
+/// A source of the document: a walker, or files.
+struct Source {
+  std::string name;
+  io::Inputs files;
+  bool walker() const { return name.starts_with("walker:"); }
+  size_t pieces() const { return walker() ? 1 : files.files.size(); }
+};
+
+std::vector<Source> sourcesOf(const Experiment& experiment, const OnFault& onFault) {
+  std::vector<Source> out;
+  for (const std::string& name : experiment.natural) {
+    Source source{name, {}};
     try {
-      for (const auto& file : io::expandInputs({source}, experiment.folder))
-        out.push_back({source, file});
+      if (!source.walker()) source.files = io::findInputs({name}, experiment.folder);
+      out.push_back(std::move(source));
     } catch (const Error& fault) {
       onFault(fault);
     }
@@ -53,39 +51,84 @@ std::vector<Piece> piecesOf(const Experiment& experiment, const OnFault& onFault
   return out;
 }
 
-NaturalMotion readPieces(const Experiment& experiment, Progress& progress, const OnFault& onFault) {
-  NaturalMotion out;
-  const std::vector<Piece> pieces = piecesOf(experiment, onFault);
-  for (size_t i = 0; i < pieces.size(); ++i) {
-    progress.throwIfCancelled();
-    const Piece& piece = pieces[i];
-    try {
-      const std::vector<Clip> clips = piece.file.empty()
-                                          ? walkerClips(piece.source, experiment.title)
-                                          : io::readClips(piece.file);
-      for (const Clip& clip : clips) {
-        out.clips.push_back(resampled(clip, experiment.fps));
-        out.sources.push_back(piece.source);
-      }
-    } catch (const Error& fault) {
-      onFault(fault);
+/// Adds the clips of sources to a result, and tells how far it has come.
+class NaturalReader {
+ public:
+  NaturalReader(const Experiment& experiment, OnFault onFault, Progress& progress)
+      : m_experiment(experiment), m_onFault(std::move(onFault)), m_progress(progress) {}
+
+  NaturalMotion read() {
+    const std::vector<Source> sources = sourcesOf(m_experiment, m_onFault);
+    for (const Source& source : sources) m_pieces += source.pieces();
+    for (const Source& source : sources) {
+      if (source.walker())
+        addWalkers(source);
+      else
+        addFiles(source);
     }
-    progress.report(static_cast<double>(i + 1) / static_cast<double>(pieces.size()),
-                    "reading natural motion");
+    return std::move(m_out);
   }
-  return out;
-}
+
+ private:
+  void addWalkers(const Source& source) {
+    try {
+      for (const Clip& clip : walkerClips(source.name, m_experiment.title))
+        add(resampled(clip, m_experiment.fps), source);
+    } catch (const InputError& fault) {
+      m_onFault(fault);
+    }
+    tell();
+  }
+
+  void addFiles(const Source& source) {
+    io::InputReport report(source.files);
+    size_t clips = 0;
+    for (const io::InputFile& file : source.files.files) {
+      m_progress.throwIfCancelled();
+      for (const Clip& clip : report.read(file, {})) {
+        report.resample(clip, m_experiment.fps);
+        add(resampled(clip, m_experiment.fps), source);
+        ++clips;
+      }
+      tell();
+    }
+    try {
+      report.throwIfNone(clips);
+    } catch (const InputError& fault) {
+      m_onFault(fault);
+    }
+    m_out.inputs.emplace_back(source.name, std::move(report));
+  }
+
+  void add(Clip clip, const Source& source) {
+    m_out.clips.push_back(std::move(clip));
+    m_out.sources.push_back(source.name);
+  }
+
+  void tell() {
+    m_progress.report(static_cast<double>(++m_done) / static_cast<double>(m_pieces),
+                      "reading natural motion");
+  }
+
+  const Experiment& m_experiment;
+  OnFault m_onFault;
+  Progress& m_progress;
+  size_t m_pieces = 0, m_done = 0;
+  NaturalMotion m_out;
+};
 
 }  // namespace
 
-std::vector<Clip> naturalClips(const Experiment& experiment, Progress& progress) {
-  return readPieces(experiment, progress, [](const Error&) { throw; }).clips;
+NaturalMotion naturalMotion(const Experiment& experiment, Progress& progress) {
+  return NaturalReader(
+             experiment, [](const Error&) { throw; }, progress)
+      .read();
 }
 
 NaturalMotion readableNatural(const Experiment& experiment, Progress& progress) {
   std::vector<std::string> faults;
-  NaturalMotion out = readPieces(experiment, progress,
-                                 [&](const Error& fault) { faults.emplace_back(fault.what()); });
+  const auto note = [&](const Error& fault) { faults.emplace_back(fault.what()); };
+  NaturalMotion out = NaturalReader(experiment, note, progress).read();
   out.faults = std::move(faults);
   return out;
 }

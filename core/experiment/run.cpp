@@ -206,13 +206,14 @@ ExperimentResult runExperiment(const Experiment& experiment, std::span<const Mod
                      "at least one source of clips", "none");
   ExperimentResult out{.experiment = experiment, .hash = experimentHash(experiment)};
   Progress reading = progress.part(0.0, 0.05);
-  out.natural = naturalClips(experiment, reading);
+  NaturalMotion natural = naturalMotion(experiment, reading);
+  for (const auto& [source, inputs] : natural.inputs) out.inputs.add(inputs);
+  out.natural = std::move(natural.clips);
   out.leftOut = dropNamed(out.natural, experiment.naturalLeftOut);
   for (LeftOut& odd : keepMainBody(out.natural)) out.leftOut.push_back(std::move(odd));
   if (out.natural.empty())
     throwInput({.path = experiment.title, .item = "key 'natural'"}, "a clip to compare with",
-               "none of {}: {}", out.leftOut.size(),
-               out.leftOut.empty() ? "no file has one" : out.leftOut.front().why);
+               "none of {}: {}", out.leftOut.size(), out.leftOut.front().why);
   out.feet = stats::feetOf(*out.natural.front().skeleton, experiment.feet);
   const double share = 0.95 / static_cast<double>(std::max<size_t>(1, experiment.systems.size()));
   for (size_t i = 0; i < experiment.systems.size(); ++i) {

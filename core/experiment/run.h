@@ -11,6 +11,7 @@
 #include "base/ranks.h"
 #include "experiment/left_out.h"
 #include "experiment/sample_set.h"
+#include "io/input_report.h"
 #include "model/likelihood.h"
 #include "model/motion_model.h"
 #include "model/scorer.h"
@@ -49,18 +50,22 @@ struct ExperimentResult {
   /// Clips of another skeleton than most, or that the document does not use, and systems that do
   /// not fit the natural motion.
   std::vector<LeftOut> leftOut;
+  io::InputReport inputs;  ///< what became of the files of the natural motion
 };
-
-/// Natural clips at the experiment's rate. Throws InputError or FileError at the first fault.
-std::vector<Clip> naturalClips(const Experiment& experiment, Progress& progress);
 
 /// What could be read of the natural sources, at the experiment's rate.
 struct NaturalMotion {
   std::vector<Clip> clips;
   std::vector<std::string> sources;  ///< of the document, one for every clip
-  std::vector<std::string> faults;   ///< why a file or source is missing
+  /// What became of the files of each source but walkers, in the document's order.
+  std::vector<std::pair<std::string, io::InputReport>> inputs;
+  std::vector<std::string> faults;  ///< why a source, or a file that was named, is missing
 };
-/// As naturalClips, but a file that cannot be read costs only its own clips. Throws CancelledError.
+/// For a report. Files found in folders that cannot be read are left out, and `inputs` names them.
+/// Throws InputError or FileError where a source gives no clip or a named file is at fault,
+/// CancelledError.
+NaturalMotion naturalMotion(const Experiment& experiment, Progress& progress);
+/// For a window: any fault costs only its own clips. Throws CancelledError.
 NaturalMotion readableNatural(const Experiment& experiment, Progress& progress);
 /// Samples `heldOutSamples` motions along the control of every natural clip with `out`'s
 /// temperature, in the clips' order; fills `out.heldOut`, its paths, its scores (empty for motions

@@ -109,6 +109,7 @@ KeptSet setFromJson(const Json& value, const std::string& origin, const std::str
   out.pinned = reader.optional("pinned", out.pinned);
   out.colour = reader.optional("colour", out.colour);
   out.hidden = reader.optional("hidden", out.hidden);
+  out.leftOut = reader.optional("left_out", out.leftOut);
   reader.finish();
   requireAtLeast(reader, "samples", out.samples, 1);
   requireAtLeast(reader, "colour", out.colour, 0);
@@ -147,6 +148,7 @@ Json toJson(const KeptSet& set) {
   if (set.pinned) out["pinned"] = true;
   if (set.colour > 0) out["colour"] = set.colour;
   if (!set.hidden.empty()) out["hidden"] = set.hidden;
+  if (!set.leftOut.empty()) out["left_out"] = set.leftOut;
   return out;
 }
 

@@ -55,8 +55,9 @@ struct KeptSet {
   std::optional<Steering> steering = {};  ///< of a steered motion
   bool heldOut = false;                   ///< along the control of every natural clip
   bool pinned = false;
-  int colour = 0;           ///< of a set whose system the document lacks (a checkpoint)
-  std::vector<int> hidden;  ///< its motions that are not shown
+  int colour = 0;                 ///< of a set whose system the document lacks (a checkpoint)
+  std::vector<int> hidden;        ///< its motions that are not shown
+  std::vector<int> leftOut = {};  ///< its motions that are not counted
 };
 
 /// What motions are compared along.

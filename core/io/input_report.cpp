@@ -11,6 +11,10 @@ bool isLoss(const Doubt& doubt) {
   return doubt.kind == "frame_count" || doubt.kind == "left_out";
 }
 
+std::string sentence(const LeftOutClip& one) {
+  return fmt::format("{} is left out: {}", one.path.empty() ? one.clip : one.path, one.why);
+}
+
 }  // namespace
 
 InputReport::InputReport(const Inputs& inputs) : m_inputs(inputs) {
@@ -46,6 +50,10 @@ void InputReport::resample(const Clip& clip, double fps) {
                    clip.fps)});
 }
 
+void InputReport::leaveOut(const Clip& clip, std::string why) {
+  m_leftOut.push_back({clip.source.path, clip.name, std::move(why)});
+}
+
 void InputReport::add(const InputReport& other) {
   const auto append = [](auto& to, const auto& from) {
     to.insert(to.end(), from.begin(), from.end());
@@ -55,6 +63,7 @@ void InputReport::add(const InputReport& other) {
     m_inputs.otherMotion[extension] += count;
   for (const auto& [extension, count] : other.m_inputs.others) m_inputs.others[extension] += count;
   append(m_doubts, other.m_doubts);
+  append(m_leftOut, other.m_leftOut);
   append(m_failed, other.m_failed);
 }
 
@@ -70,16 +79,28 @@ void InputReport::throwIfFailed() const {
 void InputReport::throwIfNone(size_t clips) const {
   throwIfFailed();
   if (clips > 0) return;
-  std::string reasons;
-  for (const std::string& remark : m_inputs.remarks())
-    reasons += (reasons.empty() ? "" : "; ") + remark;
-  throw InputError({.path = "inputs"}, "a motion file that can be read",
-                   reasons.empty() ? "none" : reasons);
+  std::vector<std::string> reasons = m_inputs.remarks();
+  for (const LeftOutClip& one : m_leftOut) reasons.push_back(sentence(one));
+  throw InputError({.path = "inputs"},
+                   m_leftOut.empty() ? "a motion file that can be read" : "a clip that can be used",
+                   reasons.empty() ? "none" : fmt::format("{}", fmt::join(reasons, "; ")));
+}
+
+std::string InputReport::missingText() const {
+  const auto counted = [](size_t count, const char* what, const char* done) {
+    return fmt::format("{} {}{} {}", count, what, count == 1 ? "" : "s", done);
+  };
+  std::vector<std::string> parts;
+  if (const size_t files = m_inputs.notRead.size(); files > 0)
+    parts.push_back(counted(files, "file", "not read"));
+  if (!m_leftOut.empty()) parts.push_back(counted(m_leftOut.size(), "clip", "left out"));
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::vector<std::string> InputReport::remarks() const {
   constexpr int kMostOfAKind = 3;
   std::vector<std::string> out = m_inputs.remarks();
+  for (const LeftOutClip& one : m_leftOut) out.push_back(sentence(one));
   std::map<std::string, int> counts;
   for (const Doubt& doubt : m_doubts)
     if (isLoss(doubt) || counts[doubt.kind]++ < kMostOfAKind)
@@ -93,6 +114,8 @@ std::vector<std::string> InputReport::remarks() const {
 
 void InputReport::addTo(Json& result) const {
   m_inputs.addTo(result);
+  for (const LeftOutClip& one : m_leftOut)
+    result["left_out"].push_back({{"name", one.clip}, {"path", one.path}, {"why", one.why}});
   for (const Doubt& doubt : m_doubts)
     result["warnings"].push_back({{"path", doubt.path},
                                   {"clip", doubt.clip},
@@ -103,6 +126,8 @@ void InputReport::addTo(Json& result) const {
 void InputReport::pack(Packer& packer) const {
   packer.add(m_inputs.notRead.size());
   for (const NotRead& one : m_inputs.notRead) packer.add(one.path.string()).add(one.reason);
+  packer.add(m_leftOut.size());
+  for (const LeftOutClip& one : m_leftOut) packer.add(one.path).add(one.clip).add(one.why);
   packer.add(m_doubts.size());
   for (const Doubt& d : m_doubts) packer.add(d.path).add(d.clip).add(d.kind).add(d.text);
 }
@@ -112,6 +137,11 @@ InputReport InputReport::unpacked(Unpacker& bytes) {
   for (auto n = bytes.number<size_t>(); n > 0; --n) {
     std::string path = bytes.text();
     out.m_inputs.notRead.push_back({std::move(path), bytes.text()});
+  }
+  for (auto n = bytes.number<size_t>(); n > 0; --n) {
+    LeftOutClip one;
+    for (std::string* part : {&one.path, &one.clip, &one.why}) *part = bytes.text();
+    out.m_leftOut.push_back(std::move(one));
   }
   for (auto n = bytes.number<size_t>(); n > 0; --n) {
     Doubt doubt;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "model/linear_gaussian.h"
+#include "motion/main_body.h"
 
 namespace marey {
 namespace {
@@ -195,6 +196,14 @@ std::vector<ClipScore> scoreClips(const MotionModel& model, std::span<const Clip
   auto out = scoreSequences(model, sequences, standardised, progress);
   for (size_t i = 0; i < out.size(); ++i) out[i].name = clips[i].name;
   return out;
+}
+
+std::string whyNotScored(const ModelInfo& info, const Clip& clip) {
+  if (3 * clip.jointCount() != info.poseDim)
+    return fmt::format("another skeleton ({} joints, {} wanted)", clip.jointCount(),
+                       info.poseDim / 3);
+  if (!info.skeleton || clip.skeleton->names == info.skeleton->names) return {};
+  return otherJoints(*clip.skeleton, *info.skeleton);
 }
 
 ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardised) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/job.h"
@@ -39,6 +40,10 @@ double toCentimetresPerFrame(const Standardiser& standardiser);
 /// short. Scoring several leaves those empty (ClipScore::tooShort), for the caller to count and
 /// name; scoring one alone refuses it.
 int fewestFrames(const ModelInfo& info);
+
+/// Why a clip cannot be scored with others under a model: its joints are not the model's. Empty: it
+/// can.
+std::string whyNotScored(const ModelInfo& info, const Clip& clip);
 
 /// Scores of many sequences, which advance together where the model can; a sequence's score does
 /// not depend on the others. Those too short are left empty. Throws CancelledError within a

@@ -177,6 +177,13 @@ std::string leftOutText(const ExperimentResult& r) {
   return out;
 }
 
+/// Files that were not read and what is doubtful in the others; empty: neither.
+std::string filesText(const ExperimentResult& r) {
+  std::string out = r.inputs.missingText();
+  for (const std::string& remark : r.inputs.remarks()) out += (out.empty() ? "" : "\n\n") + remark;
+  return out;
+}
+
 std::string summaryOf(const ExperimentResult& r) {
   double seconds = 0.0;
   for (const Clip& clip : r.natural) seconds += clip.seconds();
@@ -228,6 +235,13 @@ std::vector<DistributionPanel> distributionPanels(const ExperimentResult& r) {
   return out;
 }
 
+std::string missingText(const ExperimentResult& r) {
+  std::string out = r.inputs.missingText();
+  if (!r.leftOut.empty())
+    out += fmt::format("{}{} left out of every number", out.empty() ? "" : ", ", r.leftOut.size());
+  return out;
+}
+
 ReportData reportOf(const ExperimentResult& r, const std::string& command, Progress& progress) {
   ReportData out{.title = r.experiment.title,
                  .summary = summaryOf(r),
@@ -243,6 +257,8 @@ ReportData reportOf(const ExperimentResult& r, const std::string& command, Progr
   if (!r.experiment.paths.empty() && !r.systems.empty()) out.tables.push_back(obedienceTable(r));
   for (Table& table : statisticTables(r, progress)) out.tables.push_back(std::move(table));
   if (!r.leftOut.empty()) out.notes.push_back({"Left out", leftOutText(r)});
+  if (std::string text = filesText(r); !text.empty())
+    out.notes.push_back({"Files of the natural motion", std::move(text)});
   if (!r.experiment.notes.empty())
     out.notes.push_back({"About this experiment", r.experiment.notes});
   return out;

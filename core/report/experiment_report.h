@@ -24,4 +24,8 @@ Table definitionTable();
 std::vector<Table> statisticTables(const ExperimentResult& result, Progress& progress);
 std::vector<DistributionPanel> distributionPanels(const ExperimentResult& result);
 
+/// How much of what was given is not in the report: "2 files not read, 1 left out of every number";
+/// empty: all is.
+std::string missingText(const ExperimentResult& result);
+
 }  // namespace marey::report

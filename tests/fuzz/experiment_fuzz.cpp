@@ -1,21 +1,40 @@
-// Experiment documents: whatever the bytes, a document that is written and read back the same, or
-// an Error.
+// Experiment documents and the training of configurations: whatever the bytes, a value that is
+// written and read back the same, or an Error.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
 #include "experiment/document.h"
+#include "model/training_config.h"
+
+namespace {
+
+void readTraining(const marey::Json& value) {
+  const auto config = marey::trainingConfigFromJson(value, "fuzz.json");
+  const marey::Json written = marey::toJson(config);
+  if (marey::toJson(marey::trainingConfigFromJson(written, "back")) != written) std::abort();
+  marey::learningRateAt(config, 0);
+}
+
+void readDocument(const marey::Json& value) {
+  const auto document = marey::experimentFromJson(value, "fuzz.json");
+  const std::string written = marey::jsonText(marey::toJson(document));
+  const auto back = marey::experimentFromJson(marey::parseJson(written, "back"), "back");
+  if (marey::jsonText(marey::toJson(back)) != written) std::abort();
+  marey::experimentHash(document);
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    const auto document =
-        marey::experimentFromJson(marey::parseJson(text, "fuzz.json"), "fuzz.json");
-    const std::string written = marey::jsonText(marey::toJson(document));
-    const auto back = marey::experimentFromJson(marey::parseJson(written, "back"), "back");
-    if (marey::jsonText(marey::toJson(back)) != written) std::abort();
-    marey::experimentHash(document);
+    const marey::Json value = marey::parseJson(text, "fuzz.json");
+    if (value.is_object() && value.contains("training"))
+      readTraining(value["training"]);
+    else
+      readDocument(value);
   } catch (const marey::Error&) {
   }
   return 0;

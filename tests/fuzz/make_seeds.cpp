@@ -4,6 +4,7 @@
 #include <iostream>
 #include <string>
 
+#include "experiment_seeds.h"
 #include "npz_fuzz_names.h"
 #include "pickle_seeds.h"
 #include "text_seeds.h"
@@ -81,6 +82,11 @@ void writeNpzSeeds(const Clip& clip, const fs::path& folder) {
   std::string bigEndian = npy;
   bigEndian.replace(bigEndian.find("<f4"), 3, ">f4");
   writeFileAtomically(folder / "npy_big_endian", std::string(1, '\2') + bigEndian);
+  const std::string columns = "'fortran_order': True ", lettersNone = "'<U0'";
+  std::string empty = npy;
+  empty.replace(empty.find("'fortran_order': False"), columns.size() + 1, columns + " ");
+  empty.replace(empty.find("'<f4'"), lettersNone.size(), lettersNone);
+  writeFileAtomically(folder / "npy_no_letters", std::string(1, '\2') + empty);
   std::string structure = npy;
   structure.replace(structure.find("'<f4'"), 5, "[('x'");
   writeFileAtomically(folder / "npy_structure", std::string(1, '\2') + structure);
@@ -115,20 +121,17 @@ void writeDogSeed(const fs::path& folder) {
   writeTextKinds(folder, row + "\n" + row + "\n");
 }
 
-void writeExperimentSeed(const fs::path& folder) {
-  const Json document = {
-      {"title", "Walking"},
-      {"notes", ""},
-      {"natural", {"walker:4,10,1"}},
-      {"systems", {{{"name", "A"}, {"model", "a.marey"}, {"temperature", 0.9}}}},
-      {"paths", {{{"name", "ahead"}, {"path", "preset:slow"}, {"seconds", 5.0}}}},
-      {"samples", 2},
-      {"held_out_samples", 0},
-      {"seed", 7},
-      {"fps", 20.0},
-      {"feet", "LeftFoot,RightFoot"},
-      {"tolerance_step_cm_s", 1.0}};
-  writeJson(folder / "whole", document);
+void writeExperimentSeeds(const fs::path& folder) {
+  writeJson(folder / "whole", wholeDocument());
+  writeJson(folder / "rich", richDocument());
+  writeJson(folder / "training", trainingSeed());
+  // Parts alone, which mutations reach sooner than inside a long document.
+  const Json whole = viewSeed();
+  for (const char* part : {"scene", "camera", "sets"})
+    writeJson(folder / part, {{"natural", Json::array({"walker:4,10,1"})},
+                              {"view", Json::object({{part, whole[part]}})}});
+  writeJson(folder / "paths",
+            {{"natural", Json::array({"walker:4,10,1"})}, {"paths", pathKinds()}});
 }
 
 }  // namespace
@@ -147,7 +150,7 @@ int main(int argc, char** argv) {
     marey::writeAcclaimSeed(folder / "asf_amc");
     marey::writeDogSeed(folder / "dog_text");
     marey::writePickleSeeds(folder / "pickle");
-    marey::writeExperimentSeed(folder / "experiment");
+    marey::writeExperimentSeeds(folder / "experiment");
   } catch (const marey::Error& e) {
     std::cerr << e.what() << "\n";
     return 1;

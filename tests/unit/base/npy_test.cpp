@@ -180,6 +180,17 @@ TEST(NpyArrays, OfLaterVersionsAndWithoutBlanksAreRead) {
       parseNpy(npy("{'shape': (), 'fortran_order': True, 'descr': '<f8'}\n", data, 3), "a"));
 }
 
+TEST(NpyArrays, OfTextsWithoutALetterAreReadInEveryOrder) {
+  for (const char* columnsFirst : {"True", "False"}) {
+    const NpyArray array = parseNpyArray(
+        npy(fmt::format("{{'descr': '<U0', 'fortran_order': {}, 'shape': (2, 3)}}", columnsFirst),
+            ""),
+        "a");
+    ASSERT_TRUE(array.text) << columnsFirst;
+    EXPECT_EQ(array.text->values, std::vector<std::string>(6)) << columnsFirst;
+  }
+}
+
 TEST(NpyArrays, WithHeadersInDoubleQuotesAreRead) {
   const std::string data(8, '\0');
   EXPECT_EQ(parseNpy(npy(R"({"descr": "<f8", "fortran_order": False, "shape": (1,)})", data), "a")

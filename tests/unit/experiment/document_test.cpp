@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "fuzz/experiment_seeds.h"
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -12,6 +13,7 @@
 #include "experiment/edits.h"
 #include "experiment/history.h"
 #include "experiment/run.h"
+#include "io/clip_io.h"
 #include "motion/walker.h"
 
 namespace marey {
@@ -138,7 +140,38 @@ TEST_F(InFolder, AFileThatVanishedCostsOnlyItsOwnClips) {
   ASSERT_EQ(natural.faults.size(), 2U);
   EXPECT_NE(natural.faults[0].find("gone.bvh"), std::string::npos) << natural.faults[0];
   EXPECT_NE(natural.faults[1].find("noise.bvh"), std::string::npos) << natural.faults[1];
-  EXPECT_THROW(naturalClips(e, progress), Error) << "a report would leave clips out silently";
+  EXPECT_THROW(naturalMotion(e, progress), Error) << "a report would leave clips out silently";
+}
+
+TEST_F(InFolder, ABrokenFileInAFolderIsLeftOutAndNamed) {
+  Experiment e = twoPaths();
+  e.folder = m_folder;
+  fs::create_directories(m_folder / "clips");
+  io::writeClip(walkerDataSet(1, 2.0, 1, 20.0).front().clip, m_folder / "clips/b.bvh");
+  std::ofstream(m_folder / "clips/a.bvh") << "HIERARCHY\nno\n";
+  std::ofstream(m_folder / "clips/c.npz") << "no archive";
+  e.natural = {"clips"};
+  Progress progress;
+  for (const NaturalMotion& natural : {naturalMotion(e, progress), readableNatural(e, progress)}) {
+    ASSERT_EQ(natural.clips.size(), 1U);
+    EXPECT_TRUE(natural.faults.empty()) << natural.faults.front();
+    ASSERT_EQ(natural.inputs.size(), 1U);
+    EXPECT_EQ(natural.inputs[0].first, "clips");
+    EXPECT_EQ(natural.inputs[0].second.missingText(), "2 files not read");
+  }
+  e.natural = {"clips/a.bvh", "clips/b.bvh"};
+  EXPECT_THROW(naturalMotion(e, progress), InputError) << "it was asked for by name";
+  EXPECT_EQ(readableNatural(e, progress).faults.size(), 1U);
+  fs::remove(m_folder / "clips/b.bvh");
+  e.natural = {"clips"};
+  EXPECT_THROW(naturalMotion(e, progress), InputError) << "nothing in it can be read";
+}
+
+TEST(ViewState, SeedsOfTheFuzzerAreDocuments) {
+  const Json rich = richDocument();
+  const Experiment document = experimentFromJson(rich, "rich");
+  EXPECT_EQ(toJson(document), rich);
+  EXPECT_EQ(document.view.sets[0].leftOut, (std::vector<int>{1, 5}));
 }
 
 TEST(LeftOut, IsStoredAndChangesNoOtherDocument) {

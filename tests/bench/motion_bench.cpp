@@ -24,6 +24,7 @@ void readBvh(benchmark::State& state) {
   io::writeClip(walk(), path);
   const std::string bytes = readFile(path);
   std::filesystem::remove(path);
+  std::filesystem::remove(path.string() + ".recipe.json");
   const auto& format = io::formatByName("bvh");
   for (auto _ : state) benchmark::DoNotOptimize(format.read(bytes, path, {}));
   state.SetBytesProcessed(static_cast<int64_t>(bytes.size()) * state.iterations());

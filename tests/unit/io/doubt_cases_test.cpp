@@ -1,24 +1,11 @@
 // Files of kinds that people stumbled over: rates, offsets, sizes, poses and people of BVH files
 // (tests/fixtures/09 to 17), dialects of Acclaim's (23, 24), and other members of each kind.
-#include <functional>
-#include <set>
-#include <tuple>
-
 #include "unit/io/text_cases.h"
-
-#include "base/json.h"
-#include "io/bvh.h"
-#include "io/clip_io.h"
-#include "motion/roles.h"
 
 namespace marey::io {
 namespace {
 
 using namespace test_cases;
-using test::expectContains;
-using test::hasNote;
-using test::inputErrorOf;
-using test::with;
 
 // 09: another frame time than that of the recording.
 

@@ -3,17 +3,28 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include "unit/io/support.h"
 
 #include "base/atomic_file.h"
+#include "base/json.h"
+#include "io/bvh.h"
+#include "io/clip_io.h"
 #include "io/doctor.h"
+#include "motion/roles.h"
 
 namespace marey::io::test_cases {
 
 namespace fs = std::filesystem;
+using test::expectContains;
+using test::hasNote;
+using test::inputErrorOf;
+using test::with;
 
 /// A file of tests/fixtures/NN-name.
 inline fs::path fixture(const std::string& name) {

@@ -2,23 +2,10 @@
 // (tests/fixtures/03 to 06), and other members of each kind.
 #include "unit/io/text_cases.h"
 
-#include <functional>
-#include <set>
-#include <tuple>
-
-#include "base/json.h"
-#include "io/bvh.h"
-#include "io/clip_io.h"
-#include "motion/roles.h"
-
 namespace marey::io {
 namespace {
 
 using namespace test_cases;
-using test::expectContains;
-using test::hasNote;
-using test::inputErrorOf;
-using test::with;
 
 // 03: joint names with bytes of other encodings.
 

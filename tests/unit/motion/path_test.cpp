@@ -5,6 +5,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "unit/base/support.h"
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -24,7 +25,8 @@ double stepLength(const std::vector<RootFrame>& path, size_t i) {
 }
 
 std::string temporaryFile(const std::string& name, const std::string& content) {
-  const auto path = std::filesystem::path(testing::TempDir()) / name;
+  static const test::TempFolder folder;
+  const auto path = folder / name;
   std::ofstream(path) << content;
   return path.string();
 }

@@ -26,7 +26,7 @@ class DistributionsPanel : public PlotPanel {
     for (const stats::Quantity quantity : stats::allQuantities())
       m_quantity->addItem(QString::fromStdString(stats::textOf(quantity).name));
     m_view = combo(QStringLiteral("distributionsView"));
-    m_view->addItems({tr("Density"), tr("Violin"), tr("Over time")});
+    m_view->addItems({tr("Density"), tr("Violin"), tr("Over time"), tr("Table")});
     tools()->addWidget(new ComparisonChoice(workspace, QStringLiteral("distributions"), this), 1);
     followComparison();
     tools()->addWidget(new QLabel(tr("Body map:"), this));
@@ -123,15 +123,15 @@ class DistributionsPanel : public PlotPanel {
                                     [this] { return m_map->chart(); }));
     m_table = new ValueTable(this);
     m_table->setObjectName(QStringLiteral("distributionsTable"));
-    m_table->setMaximumHeight(150);
     m_table->setToolTip(tr("W1: 1-Wasserstein distance to natural motion"));
     auto* row = new QHBoxLayout;
     content()->removeWidget(chartArea());
     row->addWidget(m_joints);
     row->addWidget(chartArea(), 1);
+    row->addWidget(m_table, 1);
     row->addWidget(m_map);
     content()->addLayout(row, 1);
-    content()->addWidget(m_table);
+    m_table->hide();
   }
 
   stats::Quantity quantity() const {
@@ -184,10 +184,16 @@ class DistributionsPanel : public PlotPanel {
     fillTable();
   }
 
-  DistributionView view() const { return static_cast<DistributionView>(m_view->currentIndex()); }
+  /// The table has a view of its own: under four charts it would leave them no height.
+  bool asTable() const { return m_view->currentIndex() == kTable; }
+  DistributionView view() const {
+    return asTable() ? m_shownView : static_cast<DistributionView>(m_view->currentIndex());
+  }
 
   /// Densities of many samples take a while: those of a view are worked out beside the event loop.
   void redraw() {
+    chartArea()->setVisible(!asTable());
+    m_table->setVisible(asTable());
     if (!m_result) return;
     if (const auto known = m_grids.find(view()); known != m_grids.end()) {
       m_shownView = view();
@@ -237,6 +243,7 @@ class DistributionsPanel : public PlotPanel {
                      cells);
   }
 
+  static constexpr int kTable = 3;  ///< in the list of views, after those of charts
   QComboBox *m_quantity = nullptr, *m_view = nullptr, *m_mapSet = nullptr;
   QListWidget* m_joints = nullptr;
   BodyMap* m_map = nullptr;

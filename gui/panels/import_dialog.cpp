@@ -13,6 +13,7 @@
 #include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "panels/import_examiner.h"
 #include "panels/import_model.h"
@@ -112,11 +113,13 @@ class ImportDialog : public QDialog {
     m_refresh.setInterval(0);
     connect(&m_refresh, &QTimer::timeout, this, &ImportDialog::refreshButtons);
     connect(m_model, &ImportModel::choiceChanged, &m_refresh, qOverload<>(&QTimer::start));
-    connect(m_examiner, &ImportExaminer::listed, this,
-            [this](const std::vector<ImportFile>& files) {
-              m_model->setFiles(files);
-              m_table->selectRow(0);
-            });
+    connect(m_examiner, &ImportExaminer::listed, this, [this](const ImportList& list) {
+      QStringList others;
+      for (const std::string& remark : list.remarks) others << QString::fromStdString(remark);
+      m_others = others.join(QStringLiteral(" · "));
+      m_model->setFiles(list.files);
+      m_table->selectRow(0);
+    });
     connect(m_examiner, &ImportExaminer::examined, m_model, &ImportModel::setReports);
     connect(m_model, &QAbstractItemModel::dataChanged, this, [this] { showReason(); });
     connect(m_examiner, &ImportExaminer::settled, this, [this] {
@@ -174,13 +177,13 @@ class ImportDialog : public QDialog {
     m_add->setDefault(true);
     m_state = new QLabel(this);
     m_state->setObjectName(QStringLiteral("importState"));
+    m_state->setWordWrap(true);
     auto* close = new QPushButton(tr("Cancel"), this);
     close->setObjectName(QStringLiteral("importClose"));
     connect(m_add, &QPushButton::clicked, this, &ImportDialog::addToDocument);
     connect(close, &QPushButton::clicked, this, &QDialog::close);
     auto* buttons = new QHBoxLayout;
-    buttons->addWidget(m_state);
-    buttons->addStretch(1);
+    buttons->addWidget(m_state, 1);
     buttons->addWidget(close);
     buttons->addWidget(m_add);
     return buttons;
@@ -205,13 +208,25 @@ class ImportDialog : public QDialog {
                      : files == 0 ? tr("Looking for motion files…")
                      : m_examiner->busy()
                          ? tr("Examined %1 of %2").arg(m_model->examined()).arg(files)
-                         : QString());
+                         : leftOutText());
+  }
+
+  /// What is given and not added, once all of it was looked at.
+  QString leftOutText() const {
+    const auto& files = m_model->files();
+    const auto unread = std::count_if(files.begin(), files.end(),
+                                      [](const ImportFile& file) { return !file.readable(); });
+    QStringList parts;
+    if (unread > 0)
+      parts << tr("%1 of %2 files not read: choose one to see why").arg(unread).arg(files.size());
+    if (!m_others.isEmpty()) parts << m_others;
+    return parts.join(QStringLiteral(" · "));
   }
 
   /// Another row: its overrides and its motion.
   void choose() {
     const int row = m_table->currentIndex().row();
-    m_overrides->setEnabled(row >= 0);
+    m_overrides->setEnabled(row >= 0 && !m_model->files()[m_model->fileAt(row)].skipped);
     showReason();
     if (row < 0) return;
     m_overrides->setOptions(m_model->files()[m_model->fileAt(row)].options);
@@ -268,6 +283,7 @@ class ImportDialog : public QDialog {
   int m_job = -1;         ///< of adding
   bool m_closed = false;  ///< nothing more is added
   bool m_fitted = false;  ///< the columns, to what they hold
+  QString m_others;       ///< on files of other formats in the folders
   QTimer m_refresh;
   QTableView* m_table = nullptr;
   QLabel* m_reason = nullptr;

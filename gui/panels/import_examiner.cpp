@@ -21,7 +21,7 @@ struct ImportExaminer::Shared {
     std::vector<io::DoctorReport> reports;
   };
   std::mutex mutex;
-  std::optional<std::vector<ImportFile>> files;
+  std::optional<ImportList> list;
   std::deque<Found> found;
 };
 
@@ -70,14 +70,14 @@ void ImportExaminer::examineTasks(const std::vector<Task>& tasks, Shared& shared
 
 void ImportExaminer::start(const std::vector<std::string>& given) {
   run(Lane::Files, tr("Examining motion files"), [given, shared = m_shared](Progress& progress) {
-    const std::vector<ImportFile> files = importFiles(given);
+    const ImportList list = importFiles(given);
     {
       const std::lock_guard lock(shared->mutex);
-      shared->files = files;
+      shared->list = list;
     }
     std::vector<Task> tasks;
-    for (size_t i = 0; i < files.size(); ++i)
-      tasks.push_back({i, 1, files[i].path, files[i].options});
+    for (size_t i = 0; i < list.files.size(); ++i)
+      if (!list.files[i].skipped) tasks.push_back({i, 1, list.files[i].path, {}});
     examineTasks(tasks, *shared, progress);
   });
 }
@@ -92,18 +92,18 @@ void ImportExaminer::examineAll(const std::vector<ImportFile>& files) {
   m_jobs.cancel(m_allJob);
   std::vector<Task> tasks;
   for (size_t i = 0; i < files.size(); ++i)
-    tasks.push_back({i, nextVersion(i), files[i].path, files[i].options});
+    if (!files[i].skipped) tasks.push_back({i, nextVersion(i), files[i].path, files[i].options});
   run(Lane::Files, tr("Examining motion files"),
       [tasks, shared = m_shared](Progress& progress) { examineTasks(tasks, *shared, progress); });
 }
 
 void ImportExaminer::take() {
-  std::optional<std::vector<ImportFile>> files;
+  std::optional<ImportList> list;
   std::deque<Shared::Found> found;
   bool more = false;
   {
     const std::lock_guard lock(m_shared->mutex);
-    files.swap(m_shared->files);
+    list.swap(m_shared->list);
     auto& waiting = m_shared->found;
     const auto end =
         waiting.begin() + static_cast<std::ptrdiff_t>(std::min(kAtOnce, waiting.size()));
@@ -111,9 +111,9 @@ void ImportExaminer::take() {
     waiting.erase(waiting.begin(), end);
     more = !waiting.empty();
   }
-  if (files) {
-    for (size_t i = 0; i < files->size(); ++i) m_versions[i] = 1;
-    Q_EMIT listed(*files);
+  if (list) {
+    for (size_t i = 0; i < list->files.size(); ++i) m_versions[i] = 1;
+    Q_EMIT listed(*list);
   }
   for (const Shared::Found& one : found)
     if (m_versions[one.file] == one.version) Q_EMIT examined(one.file, one.reports);

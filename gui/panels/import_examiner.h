@@ -31,7 +31,7 @@ class ImportExaminer : public QObject {
   bool busy() const { return m_timer.isActive(); }
 
  Q_SIGNALS:
-  void listed(const std::vector<marey::gui::ImportFile>& files);
+  void listed(const marey::gui::ImportList& list);
   /// `file` is its number in the list. Only the last examination of a file is told.
   void examined(size_t file, const std::vector<marey::io::DoctorReport>& reports);
   /// No longer busy.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "panels/motion_export.h"
 
@@ -33,6 +34,17 @@ fs::path freeName(const fs::path& folder, const std::string& wanted, std::set<st
   return name + ".npz";
 }
 
+/// As the doctor tells of a file that cannot be read.
+io::DoctorReport notReadReport(const io::NotRead& file) {
+  io::DoctorReport out;
+  out.path = file.path.string();
+  out.faults.push_back({.kind = "unreadable",
+                        .severity = io::Severity::Error,
+                        .evidence = file.reason,
+                        .frame = {}});
+  return out;
+}
+
 }  // namespace
 
 bool ImportFile::overridden() const {
@@ -46,11 +58,22 @@ bool ImportFile::readable() const {
   });
 }
 
-std::vector<ImportFile> importFiles(const std::vector<std::string>& given) {
-  std::vector<ImportFile> out;
-  for (const std::string& source : given)
-    for (const fs::path& file : io::expandInputs({source}))
-      out.push_back({.path = file.string(), .source = source, .options = {}, .reports = {}});
+ImportList importFiles(const std::vector<std::string>& given) {
+  ImportList out;
+  for (const std::string& source : given) {
+    io::Inputs inputs = io::findInputs({source});
+    for (const io::InputFile& file : inputs.files)
+      out.files.push_back(
+          {.path = file.path.string(), .source = source, .options = {}, .reports = {}});
+    for (const io::NotRead& file : std::exchange(inputs.notRead, {}))
+      out.files.push_back({.path = file.path.string(),
+                           .source = source,
+                           .options = {},
+                           .reports = {notReadReport(file)},
+                           .skipped = true});
+    for (std::string& remark : inputs.remarks())
+      out.remarks.push_back(fmt::format("{}: {}", source, remark));
+  }
   return out;
 }
 
@@ -59,7 +82,7 @@ std::vector<std::string> convertOverridden(const std::vector<ImportFile>& files,
   std::vector<std::string> out;
   std::set<std::string> taken, broken;  // broken: sources that are not taken as a whole
   for (const ImportFile& file : files)
-    if (!file.taken() || file.overridden()) broken.insert(file.source);
+    if (!file.skipped && (!file.taken() || file.overridden())) broken.insert(file.source);
   std::optional<StagedFolder> staged;
   for (size_t i = 0; i < files.size(); ++i) {
     const ImportFile& file = files[i];

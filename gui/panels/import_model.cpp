@@ -60,6 +60,7 @@ void ImportModel::setFiles(std::vector<ImportFile> files) {
   beginResetModel();
   m_files = std::move(files);
   m_examined = 0;
+  for (const ImportFile& file : m_files) m_examined += file.skipped ? 1 : 0;
   m_rows.clear();
   for (size_t i = 0; i < m_files.size(); ++i) m_rows.push_back({i, 0});
   endResetModel();

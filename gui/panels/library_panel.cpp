@@ -8,6 +8,8 @@
 #include <QToolButton>
 #include <QTreeView>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <map>
 
 #include "panels/model_card.h"
 #include "panels/motion_tree.h"
@@ -69,9 +71,12 @@ class LibraryPanel : public QWidget {
     m_view->header()->setSectionResizeMode(MotionTree::Name, QHeaderView::Stretch);
     m_view->header()->setMinimumSectionSize(36);
     m_view->header()->hideSection(MotionTree::Frames);  // seconds say as much; the tooltip has both
-    m_view->header()->resizeSection(MotionTree::Seconds, 46);
-    m_view->header()->resizeSection(MotionTree::Score, 50);
-    m_view->header()->resizeSection(MotionTree::Use, 36);
+    // As wide as their values, and as their names in whatever font.
+    const std::map<int, int> least = {
+        {MotionTree::Seconds, 46}, {MotionTree::Score, 50}, {MotionTree::Use, 36}};
+    for (const auto& [column, width] : least)
+      m_view->header()->resizeSection(column,
+                                      std::max(width, m_view->header()->sectionSizeHint(column)));
     m_view->setIndentation(14);
   }
 

@@ -8,6 +8,7 @@
 #include <QPixmap>
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "panels/paint_style.h"
 
@@ -230,7 +231,12 @@ QVariant MotionTree::branchData(const Branch& branch, int column, int role) cons
                                                      : QVariant();
   if (group == nullptr) return {};
   const QString source = QString::fromStdString(branch.source);
-  if (role == Qt::ToolTipRole) return source.isEmpty() ? recipeText(*group) : source;
+  const std::vector<std::string> unread = remarksOn(branch, *group);
+  if (role == Qt::ToolTipRole) {
+    QString tip = source.isEmpty() ? recipeText(*group) : source;
+    for (const std::string& remark : unread) tip += u'\n' + QString::fromStdString(remark);
+    return tip;
+  }
   if (column == Use && role == Qt::CheckStateRole) return state(branch, *group, &Motion::used);
   if (column != Name) return {};
   if (role == Qt::DisplayRole) {
@@ -239,11 +245,26 @@ QVariant MotionTree::branchData(const Branch& branch, int column, int role) cons
                              : QStringLiteral("%1 – %2").arg(QString::fromStdString(group->name),
                                                              QFileInfo(source).fileName());
     const QString state = group->pinned ? tr("  pinned") : !group->complete ? tr("  …") : QString();
-    return QStringLiteral("%1  (%2)%3").arg(name).arg(branch.rows).arg(state);
+    const QString remarks = unread.empty() ? QString() : tr("  ⚠ see tip");
+    return QStringLiteral("%1  (%2)%3%4").arg(name).arg(branch.rows).arg(state, remarks);
   }
   if (role == Qt::DecorationRole) return swatch(group->colour());
   if (role == Qt::CheckStateRole) return state(branch, *group, &Motion::visible);
   return {};
+}
+
+std::vector<std::string> MotionTree::remarksOn(const Branch& branch,
+                                               const MotionGroup& group) const {
+  std::vector<std::string> out;
+  if (!group.natural()) return out;
+  std::set<std::string> sources;
+  for (const MotionId& id : motionsOf(branch))
+    if (const Motion* motion = m_workspace.motion(id)) sources.insert(motion->source);
+  for (const auto& [source, inputs] : m_workspace.naturalInputs()) {
+    if (!sources.contains(source) || inputs.missingText().empty()) continue;
+    for (std::string& remark : inputs.remarks()) out.push_back(std::move(remark));
+  }
+  return out;
 }
 
 QVariant MotionTree::state(const Branch& branch, const MotionGroup& group,

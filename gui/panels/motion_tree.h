@@ -51,6 +51,8 @@ class MotionTree : public QAbstractItemModel {
   /// The branch that `index` is or lies in.
   const Branch* branchOf(const QModelIndex& index) const;
   std::vector<MotionId> motionsOf(const Branch& branch) const;
+  /// On the files of natural sources where some are missing: which, and why.
+  std::vector<std::string> remarksOn(const Branch& branch, const MotionGroup& group) const;
   QVariant branchData(const Branch& branch, int column, int role) const;
   /// Of all motions in the branch.
   QVariant state(const Branch& branch, const MotionGroup& group, bool Motion::*flag) const;

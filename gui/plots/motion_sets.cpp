@@ -72,7 +72,7 @@ std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups, Compar
 std::string countedText(const std::vector<MotionSet>& sets) {
   std::string out;
   for (const MotionSet& set : sets) {
-    out += fmt::format("{}{} {} of {}", out.empty() ? "Counted: " : ", ", set.name,
+    out += fmt::format("{}{}: {} of {}", out.empty() ? "Counted: " : "; ", set.name,
                        set.clips.size(), set.all);
     if (set.otherBody > 0) out += fmt::format(" ({} of another skeleton)", set.otherBody);
   }

@@ -99,7 +99,7 @@ void MainWindow::buildDocks(const std::vector<PanelSpec>& panels) {
     if (areas.contains(area)) m_docks->setSplitterSizes(areas[area], sizes);
   };
   size(PanelArea::Centre, {270, 670, 560});
-  size(PanelArea::Plots, {400, 300});
+  size(PanelArea::Plots, {320, 380});
   size(PanelArea::Bottom, {665, 215});
   m_firstLayout = m_docks->saveState();
 }

@@ -221,16 +221,24 @@ void MainWindow::writeReport() {
   if (folder.isEmpty()) return;
   const Experiment document = m_workspace.experiment();
   const std::string out = folder.toStdString();
+  const auto missing = std::make_shared<std::string>();
   m_workspace.jobs().start(
       Lane::Exports, tr("Writing the report"),
-      [document, out](Progress& progress) {
+      [document, out, missing](Progress& progress) {
         Progress running = progress.part(0.0, 0.7), drawing = progress.part(0.7, 0.8),
                  writing = progress.part(0.8, 1.0);
         const auto result = runExperiment(document, modelFamilies(), running);
         const auto data = report::reportOf(result, "marey report", drawing);
         report::writeReport(data, out, writing);
+        *missing = report::missingText(result);
       },
-      [this, folder] { statusBar()->showMessage(tr("Report written to %1").arg(folder), 8000); },
+      [this, folder, missing] {
+        const QString written = tr("Report written to %1").arg(folder);
+        statusBar()->showMessage(missing->empty()
+                                     ? written
+                                     : tr("%1; %2").arg(written, QString::fromStdString(*missing)),
+                                 8000);
+      },
       this);
 }
 

@@ -63,8 +63,9 @@ class Workspace : public QObject {
   void setVisible(int group, bool visible);
   void setVisible(const MotionId& id, bool visible);
   void setVisible(const std::vector<MotionId>& ids, bool visible);
-  /// Whether plots and statistics count motions, shown or hidden. Of natural clips the document
-  /// keeps it (by their names), so that a report leaves out the same ones.
+  /// Whether plots and statistics count motions, shown or hidden. Of natural clips it is an edit of
+  /// the document (by their names), so that a report leaves out the same ones; of samples it is
+  /// kept with their set.
   void setUsed(const std::vector<MotionId>& ids, bool used);
   /// Hides all others.
   void showOnly(const std::set<MotionId>& shown);
@@ -90,6 +91,10 @@ class Workspace : public QObject {
   // Work in the background. Results come by signals, errors by JobQueue::failed.
   /// Reads all natural sources again; what cannot be read is reported, the rest is shown.
   void readNatural();
+  /// What became of the files of each natural source, when they were read.
+  const std::vector<std::pair<std::string, io::InputReport>>& naturalInputs() const {
+    return m_naturalInputs;
+  }
   /// Draws a recipe. `replaceGroup`, unless pinned, stays until the first motions are there. The
   /// colour is that of the recipe's system in the document, or `colourIndex` where it is none.
   void sample(const SampleRecipe& recipe, int replaceGroup = -1, int colourIndex = 0);
@@ -183,7 +188,11 @@ class Workspace : public QObject {
   std::vector<KeptSet> keptSets() const;
   /// What tells pinned sets apart, drawn or offered; sorted.
   std::vector<std::string> pinnedSets() const;
-  void hideAsKept(MotionGroup& group);
+  /// Numbers of a group's motions that a flag is off for.
+  std::vector<int> without(const MotionGroup& group, bool Motion::*flag,
+                           std::vector<int> KeptSet::*kept) const;
+  /// Its motions from `fresh` on are hidden and left out as the document says.
+  void markAsKept(MotionGroup& group, size_t fresh);
   void showNatural(MotionGroup& group);
   // Workspace_held_out.cpp
   SampleRecipe heldOutRecipe(const ExperimentSystem& system) const;
@@ -224,7 +233,8 @@ class Workspace : public QObject {
   std::vector<std::string> m_savedPins;   ///< pinnedSets() of what was opened or saved
   /// What is to be shown of natural motion when it is read; none: as before, and a few of new ones.
   std::optional<std::vector<ShownClips>> m_naturalShown;
-  std::map<int, std::vector<int>> m_hidden;  ///< motions of groups being drawn that stay hidden
+  std::vector<std::pair<std::string, io::InputReport>> m_naturalInputs;
+  std::map<int, KeptSet> m_kept;  ///< what the document says of groups being drawn
   double m_time = 0.0;
   std::optional<TimeRange> m_range;
   std::shared_ptr<ModelCache> m_models;

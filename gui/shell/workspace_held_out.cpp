@@ -133,6 +133,7 @@ void Workspace::takeHeldOut(int id, std::vector<Motion> motions) {
   MotionGroup* group = findGroup(id);
   if (group == nullptr) return;
   group->motions = std::move(motions);
+  markAsKept(*group, 0);
   const auto drawing = m_drawings.find(id);
   if (drawing != m_drawings.end()) dropReplaced(std::exchange(drawing->second.replaces, {}));
   tellMotions();

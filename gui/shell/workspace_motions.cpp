@@ -83,6 +83,7 @@ void Workspace::setVisible(const std::vector<MotionId>& ids, bool visible) {
 void Workspace::setUsed(const std::vector<MotionId>& ids, bool used) {
   std::set<std::string> natural;
   bool changed = false;
+  const std::vector<std::string> pinned = pinnedSets();
   for (const MotionId& id : ids) {
     if (motion(id) == nullptr || motion(id)->used == used) continue;
     MotionGroup& group = *findGroup(id.group);
@@ -95,6 +96,7 @@ void Workspace::setUsed(const std::vector<MotionId>& ids, bool used) {
     changed = true;
   }
   if (changed) tellMotions();
+  if (pinnedSets() != pinned) Q_EMIT documentChanged();  // it keeps pinned sets
   if (natural.empty()) return;
   edit(used ? tr("Use clips") : tr("Leave clips out"), [&](Experiment& e) {
     std::erase_if(e.naturalLeftOut,

@@ -24,6 +24,13 @@ bool canBeKept(const KeptSet& set) {
   }
 }
 
+/// A flag of the motions from `fresh` on is on but for those of the given numbers.
+void setFlag(MotionGroup& group, size_t fresh, bool Motion::*flag, const std::vector<int>& off) {
+  const std::set<int> without(off.begin(), off.end());
+  for (size_t i = fresh; i < group.motions.size(); ++i)
+    group.motions[i].*flag = !without.contains(static_cast<int>(i));
+}
+
 /// Saving in another folder names files from there.
 KeptSet inFolder(KeptSet set, const std::filesystem::path& from, const std::filesystem::path& to) {
   if (from == to) return set;
@@ -63,7 +70,7 @@ void Workspace::takeView(ViewState view) {
   for (const std::string& system : view.notSampled)
     if (systemIndex(system) >= 0) m_leftOut.insert(system);
   m_naturalShown = view.natural;
-  m_hidden.clear();
+  m_kept.clear();
   m_offered = view.sets;
   m_offeredFolder = experiment().folder;
   m_savedPins = pinnedSets();
@@ -135,8 +142,8 @@ std::vector<KeptSet> Workspace::keptSets() const {
     KeptSet set = keptSetOf(recipeHere(*group.recipe));
     set.pinned = group.pinned;
     if (systemIndex(group.system) < 0) set.colour = group.colourIndex;
-    for (size_t i = 0; i < group.motions.size(); ++i)
-      if (!group.motions[i].visible) set.hidden.push_back(static_cast<int>(i));
+    set.hidden = without(group, &Motion::visible, &KeptSet::hidden);
+    set.leftOut = without(group, &Motion::used, &KeptSet::leftOut);
     if (canBeKept(set)) out.push_back(std::move(set));
   }
   // What was not drawn again is not given up by saving.
@@ -153,25 +160,38 @@ SampleRecipe Workspace::recipeHere(const SampleRecipe& recipe) const {
 std::vector<std::string> Workspace::pinnedSets() const {
   std::vector<std::string> out;
   const auto add = [&](const ExperimentSystem& system, const ExperimentPath& path, int samples,
-                       uint64_t seed) {
-    out.push_back(fmt::format("{}\n{}\n{}\n{}\n{}", system.name, system.temperature, path.name,
-                              samples, seed));
+                       uint64_t seed, const std::vector<int>& leftOut) {
+    out.push_back(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", system.name, system.temperature, path.name,
+                              samples, seed, fmt::join(leftOut, " ")));
   };
   for (const MotionGroup& group : m_groups)
     if (group.pinned && group.recipe)
-      add(group.recipe->system, group.recipe->path, group.recipe->samples, group.recipe->seed);
+      add(group.recipe->system, group.recipe->path, group.recipe->samples, group.recipe->seed,
+          without(group, &Motion::used, &KeptSet::leftOut));
   for (const KeptSet& set : m_offered)
-    if (set.pinned) add(set.system, set.path, set.samples, set.seed);
+    if (set.pinned) add(set.system, set.path, set.samples, set.seed, set.leftOut);
   std::sort(out.begin(), out.end());
   return out;
 }
 
-void Workspace::hideAsKept(MotionGroup& group) {
-  const auto hidden = m_hidden.find(group.id);
-  if (hidden == m_hidden.end()) return;
-  for (const int index : hidden->second)
-    if (index >= 0 && index < static_cast<int>(group.motions.size()))
-      group.motions[static_cast<size_t>(index)].visible = false;
+std::vector<int> Workspace::without(const MotionGroup& group, bool Motion::*flag,
+                                    std::vector<int> KeptSet::*kept) const {
+  std::vector<int> out;
+  const auto count = static_cast<int>(group.motions.size());
+  for (int i = 0; i < count; ++i)
+    if (!(group.motions[static_cast<size_t>(i)].*flag)) out.push_back(i);
+  // Those that are still to be drawn keep what the document says of them.
+  if (const auto drawn = m_kept.find(group.id); drawn != m_kept.end())
+    for (const int i : drawn->second.*kept)
+      if (i >= count) out.push_back(i);
+  return out;
+}
+
+void Workspace::markAsKept(MotionGroup& group, size_t fresh) {
+  const auto kept = m_kept.find(group.id);
+  if (kept == m_kept.end()) return;
+  setFlag(group, fresh, &Motion::visible, kept->second.hidden);
+  setFlag(group, fresh, &Motion::used, kept->second.leftOut);
 }
 
 void Workspace::sampleOffered() {
@@ -185,7 +205,7 @@ void Workspace::sampleOffered() {
     sample(recipe, -1, set.colour);
     MotionGroup& group = m_groups.back();
     group.pinned = set.pinned;
-    m_hidden[group.id] = set.hidden;
+    m_kept[group.id] = set;
   }
   Q_EMIT offeredChanged();
   Q_EMIT documentChanged();

@@ -27,15 +27,6 @@ QString faultText(const std::vector<std::string>& faults) {
   return lines.join(u'\n');
 }
 
-bool fits(const MotionModel& model, const Clip& clip) {
-  try {
-    requireSameJoints(model.info(), clip, clip.name);
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 /// A clip of another skeleton than the model's leaves the others alone: its score has no name, and
 /// panels count it.
 std::vector<ClipScore> scoresOf(const MotionModel& model, const std::vector<ClipPtr>& clips,
@@ -43,7 +34,7 @@ std::vector<ClipScore> scoresOf(const MotionModel& model, const std::vector<Clip
   std::vector<Clip> fitting;
   std::vector<size_t> places;
   for (size_t i = 0; i < clips.size(); ++i) {
-    if (!fits(model, *clips[i])) continue;
+    if (!whyNotScored(model.info(), *clips[i]).empty()) continue;
     fitting.push_back(*clips[i]);
     places.push_back(i);
   }
@@ -131,12 +122,19 @@ void Workspace::takeNatural(NaturalMotion natural) {
   std::erase_if(m_groups, [](const MotionGroup& g) { return g.natural(); });
   dropHeldOut();
   const QString odd = oddText(group);
+  m_naturalInputs = std::move(natural.inputs);
   if (!group.motions.empty()) m_groups.insert(m_groups.begin(), std::move(group));
   followUse();
   tellMotions();
   Q_EMIT naturalScoresChanged();
   if (!natural.faults.empty()) report(tr("Reading natural motion"), faultText(natural.faults));
   if (!odd.isEmpty()) report(tr("Comparing natural motion"), odd);
+  io::InputReport all;
+  for (const auto& [source, inputs] : m_naturalInputs) all.add(inputs);
+  if (const std::string missing = all.missingText(); !missing.empty())
+    Q_EMIT noticed(
+        tr("Natural motion: %1; the tip of its row in Motions lists them with the reasons")
+            .arg(QString::fromStdString(missing)));
 }
 
 const std::vector<ClipScore>* Workspace::naturalScores(const std::string& system) const {
@@ -281,9 +279,10 @@ void Workspace::addMotions(int id, const std::vector<RootFrame>& wanted,
   MotionGroup* group = findGroup(id);
   if (group == nullptr) return;
   group->wanted = wanted;
+  const size_t fresh = group->motions.size();
   for (SampledMotion& motion : motions)
     group->motions.push_back({std::move(motion.clip), std::move(motion.score), true});
-  hideAsKept(*group);
+  markAsKept(*group, fresh);
   const auto drawing = m_drawings.find(id);
   if (drawing != m_drawings.end()) dropReplaced(std::exchange(drawing->second.replaces, {}));
   tellMotions();
@@ -296,7 +295,7 @@ void Workspace::dropReplaced(const std::vector<int>& groups) {
 
 void Workspace::finishGroup(int id, const Drawing& drawing, bool successful) {
   MotionGroup* group = findGroup(id);
-  m_hidden.erase(id);
+  m_kept.erase(id);
   if (group == nullptr) return;
   group->modelHash = *drawing.modelHash;
   group->complete = successful;

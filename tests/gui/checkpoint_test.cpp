@@ -39,9 +39,6 @@ class Checkpoints : public WindowTest {
     m_run = m_folder.path().toStdString() + "/run";
     writeRun(m_run);
   }
-  bool idle() {
-    return waitUntil([this] { return m_jobs->idle(); });
-  }
   std::string m_run;
 };
 

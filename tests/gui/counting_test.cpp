@@ -1,6 +1,7 @@
 // What is shown and what is counted are two things, one odd file stops nothing, and charts can be
 // read where the window opens.
 #include <QComboBox>
+#include <QHeaderView>
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
@@ -18,22 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Forty frames of a body of two joints.
-void writeSmallBvh(const fs::path& path) {
-  std::ofstream out(path);
-  out << "HIERARCHY\nROOT Hips\n{\nOFFSET 0 90 0\nCHANNELS 3 Xposition Yposition Zposition\n"
-         "JOINT Head\n{\nOFFSET 0 60 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
-         "End Site\n{\nOFFSET 0 10 0\n}\n}\n}\nMOTION\nFrames: 40\nFrame Time: 0.05\n";
-  for (int frame = 0; frame < 40; ++frame) out << "0 90 " << frame << " 0 0 0\n";
-}
-
-class Counting : public WindowTest {
+class Counting : public DemoTest {
  protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
   bool idle() {
     settle(300);
     return waitUntil([this] { return m_jobs->idle(); });
@@ -79,7 +66,7 @@ TEST_F(Counting, HidingMotionsChangesNoNumber) {
   const QStringList all = statistics();
   ASSERT_GT(all.size(), 20);
   const QString before = counted("statistics");
-  EXPECT_TRUE(before.contains("Natural 6 of 6")) << qPrintable(before);
+  EXPECT_TRUE(before.contains("Natural: 6 of 6")) << qPrintable(before);
   const int natural = m_workspace->groups().front().id, samples = m_workspace->groups().back().id;
   m_workspace->setVisible(natural, false);
   m_workspace->setVisible(MotionId{samples, 0}, false);
@@ -101,7 +88,7 @@ TEST_F(Counting, LeavingAClipOutIsAnEditOfTheDocument) {
   EXPECT_EQ(m_workspace->experiment().naturalLeftOut, std::vector<std::string>{name});
   EXPECT_TRUE(m_workspace->motion({natural, 1})->visible) << "it was hidden, too";
   EXPECT_NE(statistics(), all);
-  EXPECT_TRUE(counted("statistics").contains("Natural 5 of 6"));
+  EXPECT_TRUE(counted("statistics").contains("Natural: 5 of 6"));
   const fs::path file = fs::path(m_folder.path().toStdString()) / "x.json";
   m_workspace->save(QString::fromStdString(file));
   m_workspace->open(readExperiment(file), QString::fromStdString(file));
@@ -142,7 +129,7 @@ TEST_F(Counting, OneOddFileIsNamedAndTheOthersGoOn) {
   EXPECT_GT(statistics().size(), 20);
   for (const char* panel : {"likelihood", "footsteps", "distributions", "diversity"}) {
     EXPECT_FALSE(shownChart(panel).charts.empty()) << panel;
-    EXPECT_TRUE(counted(panel).contains("Natural 6 of 7 (1 of another skeleton)"))
+    EXPECT_TRUE(counted(panel).contains("Natural: 6 of 7 (1 of another skeleton)"))
         << qPrintable(counted(panel));
   }
 }
@@ -180,7 +167,41 @@ TEST_F(Counting, DensitiesOfFourJointsStandOnTheirAxisWhereTheWindowOpens) {
       EXPECT_GE(frame.bottom - frame.top, 40.0) << view << ": a plot turned upside down";
       EXPECT_LE(frame.bottom, chart->height());
     }
+    const QWidget* seen = chart->parentWidget();
+    EXPECT_LE(chart->height(), seen->height()) << view << ": they have to be scrolled";
   }
+  EXPECT_FALSE(child<QTableWidget>(*panel, "distributionsTable")->isVisible());
+  child<QComboBox>(*panel, "distributionsView")->setCurrentIndex(3);
+  EXPECT_TRUE(child<QTableWidget>(*panel, "distributionsTable")->isVisible());
+  EXPECT_FALSE(chart->isVisible());
+}
+
+TEST_F(Counting, TheHeaderOfTheMotionsIsReadableWhereTheWindowOpens) {
+  const auto* header = child<QTreeView>(*m_window->showPanel("library"), "motionTree")->header();
+  for (int column = 1; column < header->count(); ++column)
+    if (!header->isSectionHidden(column))
+      EXPECT_GE(header->sectionSize(column), header->sectionSizeHint(column)) << column;
+}
+
+TEST_F(Counting, FilesOfAFolderThatAreNotReadAreNamedInMotions) {
+  fs::create_directory(file("clips"));
+  writeSmallBvh(file("clips/a.bvh"));
+  std::ofstream(file("clips/broken.bvh")) << "HIERARCHY\nno\n";
+  std::ofstream(file("clips/labels.npz")) << "no archive";
+  QStringList news;
+  QObject::connect(m_workspace.get(), &Workspace::noticed, m_window.get(),
+                   [&](const QString& what) { news << what; });
+  m_workspace->edit("Add", [&](Experiment& e) { e.natural = {file("clips").string()}; });
+  ASSERT_TRUE(idle());
+  EXPECT_TRUE(m_errors.empty()) << m_errors.front();
+  ASSERT_EQ(m_workspace->groups().front().motions.size(), 1U);
+  EXPECT_TRUE(news.join(' ').contains("2 files not read")) << qPrintable(news.join(' '));
+  const auto* tree = child<QTreeView>(*m_window->showPanel("library"), "motionTree");
+  const QModelIndex row = tree->model()->index(0, 0);
+  EXPECT_TRUE(row.data().toString().contains("see tip")) << qPrintable(row.data().toString());
+  const QString tip = row.data(Qt::ToolTipRole).toString();
+  EXPECT_TRUE(tip.contains("broken.bvh")) << qPrintable(tip);
+  EXPECT_TRUE(tip.contains("labels.npz")) << qPrintable(tip);
 }
 
 TEST_F(Counting, TheLegendOfTheLossFitsItsWidth) {

@@ -23,27 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Forty frames of a body of two joints.
-void writeSmallBvh(const fs::path& path) {
-  std::ofstream out(path);
-  out << "HIERARCHY\nROOT Hips\n{\nOFFSET 0 90 0\nCHANNELS 3 Xposition Yposition Zposition\n"
-         "JOINT Head\n{\nOFFSET 0 60 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
-         "End Site\n{\nOFFSET 0 10 0\n}\n}\n}\nMOTION\nFrames: 40\nFrame Time: 0.05\n";
-  for (int frame = 0; frame < 40; ++frame) out << "0 90 " << frame << " 0 0 0\n";
-}
-
-class Documents : public WindowTest {
+class Documents : public DemoTest {
  protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
   void TearDown() override {
     m_answers.clear();
-    WindowTest::TearDown();
+    DemoTest::TearDown();
   }
-  fs::path file(const char* name) const { return fs::path(m_folder.path().toStdString()) / name; }
   QDir autosaves() const {
     return QDir(QStandardPaths::writableLocation(QStandardPaths::AppLocalDataLocation) +
                 "/autosave");

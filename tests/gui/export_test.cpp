@@ -66,9 +66,6 @@ class Export : public WindowTest {
     child<QSpinBox>(*m_dialog, "exportHeight")->setValue(120);
     child<QDoubleSpinBox>(*m_dialog, "exportFps")->setValue(10.0);
   }
-  bool idle() {
-    return waitUntil([this] { return m_jobs->idle(); });
-  }
   void choose(ExportFormat format) {
     auto* box = child<QComboBox>(*m_dialog, "exportFormat");
     box->setCurrentIndex(box->findData(static_cast<int>(format)));

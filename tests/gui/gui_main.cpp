@@ -1,5 +1,5 @@
 // Tests of a real window. Listing them needs no display.
-#include <cstring>
+#include <QTemporaryDir>
 
 #include "panels/scene_view.h"
 #include "shell/application.h"
@@ -8,6 +8,10 @@
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   if (::testing::GTEST_FLAG(list_tests)) return RUN_ALL_TESTS();
+  // Qt writes settings after the last test, into the folder that the test had: all of them lie in
+  // one that goes last.
+  const QTemporaryDir folder;
+  qputenv("TMPDIR", folder.path().toUtf8());
   marey::gui::SceneView::prepareApplication();
   marey::gui::Application application(argc, argv);
   QApplication::setOrganizationName(QStringLiteral("Marey"));

@@ -5,6 +5,7 @@
 #include <QMessageBox>
 #include <QStandardPaths>
 #include <QThread>
+#include <fstream>
 
 #include "render/ssim.h"
 
@@ -87,6 +88,14 @@ void WindowTest::openWindow() {
   settle();
 }
 
+bool WindowTest::idle() {
+  return waitUntil([this] { return m_jobs->idle(); });
+}
+
+std::filesystem::path WindowTest::file(const std::string& name) const {
+  return std::filesystem::path(m_folder.path().toStdString()) / name;
+}
+
 void WindowTest::openSmallDemo() {
   Experiment demo = demoDocument();
   demo.natural = {"walker:6,4,90210"};
@@ -95,6 +104,20 @@ void WindowTest::openSmallDemo() {
   m_workspace->open(demo, {});
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
   ASSERT_EQ(m_workspace->groups().size(), 1U);
+}
+
+void DemoTest::SetUp() {
+  WindowTest::SetUp();
+  openWindow();
+  openSmallDemo();
+}
+
+void writeSmallBvh(const std::filesystem::path& path) {
+  std::ofstream out(path);
+  out << "HIERARCHY\nROOT Hips\n{\nOFFSET 0 90 0\nCHANNELS 3 Xposition Yposition Zposition\n"
+         "JOINT Head\n{\nOFFSET 0 60 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
+         "End Site\n{\nOFFSET 0 10 0\n}\n}\n}\nMOTION\nFrames: 40\nFrame Time: 0.05\n";
+  for (int frame = 0; frame < 40; ++frame) out << "0 90 " << frame << " 0 0 0\n";
 }
 
 }  // namespace marey::gui

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QTemporaryDir>
+#include <filesystem>
 #include <functional>
 #include <memory>
 
@@ -40,6 +41,10 @@ class WindowTest : public ::testing::Test {
   void openSmallDemo();
   /// Shows the window as the user has it before; makes a new one where there is one.
   void openWindow();
+  /// Waits until no job runs.
+  bool idle();
+  /// In the test's own folder.
+  std::filesystem::path file(const std::string& name) const;
 
   QTemporaryDir m_folder;
   std::unique_ptr<JobQueue> m_jobs;
@@ -47,5 +52,14 @@ class WindowTest : public ::testing::Test {
   std::unique_ptr<MainWindow> m_window;
   std::vector<std::string> m_errors;  ///< reported to the user
 };
+
+/// Starts with the small demonstration in an open window.
+class DemoTest : public WindowTest {
+ protected:
+  void SetUp() override;
+};
+
+/// Forty frames of a body of two joints, which no model has.
+void writeSmallBvh(const std::filesystem::path& path);
 
 }  // namespace marey::gui

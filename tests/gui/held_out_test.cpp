@@ -17,13 +17,8 @@
 namespace marey::gui {
 namespace {
 
-class HeldOut : public WindowTest {
+class HeldOut : public DemoTest {
  protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
   bool idle() {
     return waitUntil([this] { return m_jobs->idle(); }, 120.0);
   }

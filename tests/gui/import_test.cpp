@@ -3,6 +3,7 @@
 #include <QComboBox>
 #include <QDialog>
 #include <QElapsedTimer>
+#include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QTableView>
@@ -94,6 +95,34 @@ Stall longestStall(const std::function<bool()>& ready, double seconds) {
     QThread::msleep(1);
   }
   return longest;
+}
+
+TEST_F(Import, WhatAFolderLeavesOutIsListedWithItsReason) {
+  writeWalks(2);
+  std::ofstream(m_motion / "labels.npz") << "no archive";
+  std::ofstream(m_motion / "notes.doc") << "mine";
+  fs::create_symlink(m_motion / "gone.bvh", m_motion / "link.bvh");
+  open({QString::fromStdString(m_motion)});
+  ASSERT_TRUE(examined());
+  ASSERT_EQ(m_table->model()->rowCount(), 4);
+  const auto* reason = child<QLabel>(*m_dialog, "importReason");
+  std::string reasons;
+  for (int row = 2; row < 4; ++row) {
+    const QModelIndex index = m_table->model()->index(row, 0);
+    EXPECT_EQ(index.data(Qt::CheckStateRole), Qt::Unchecked) << row;
+    m_table->selectRow(row);
+    reasons += cell(row, 0) + ": " + reason->text().toStdString() + "\n";
+  }
+  EXPECT_NE(reasons.find("labels.npz: error: no motion"), std::string::npos) << reasons;
+  EXPECT_NE(reasons.find("link.bvh: error: a link to nothing"), std::string::npos) << reasons;
+  const std::string state = child<QLabel>(*m_dialog, "importState")->text().toStdString();
+  EXPECT_NE(state.find("2 of 4 files not read"), std::string::npos) << state;
+  EXPECT_NE(state.find("doc"), std::string::npos) << state;
+  EXPECT_EQ(add()->text(), "Add 2 files");
+  add()->click();
+  ASSERT_TRUE(waitUntil([this] { return !dialogShown() && m_jobs->idle(); }));
+  EXPECT_EQ(m_workspace->experiment().natural, std::vector<std::string>{m_motion.string()})
+      << "the folder leaves them out by itself";
 }
 
 TEST_F(Import, AThousandFilesLeaveTheWindowResponsive) {

@@ -18,20 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Journey : public WindowTest {
+class Journey : public DemoTest {
  protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
   void click(const char* name) {
     auto* button = child<QPushButton>(*m_window, name);
     ASSERT_TRUE(button->isEnabled()) << name;
     QTest::mouseClick(button, Qt::LeftButton);
-  }
-  bool idle() {
-    return waitUntil([this] { return m_jobs->idle(); });
   }
 };
 

@@ -28,19 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class KeptView : public WindowTest {
+class KeptView : public DemoTest {
  protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
-  bool idle() {
-    return waitUntil([this] { return m_jobs->idle(); });
-  }
-  fs::path file(const std::string& name) const {
-    return fs::path(m_folder.path().toStdString()) / name;
-  }
   SceneView& scene() {
     m_window->showPanel("scene");
     return *child<SceneView>(*m_window, "sceneView");
@@ -137,6 +126,29 @@ TEST_F(KeptView, SetsAreOfferedAndComeBackBitForBit) {
   EXPECT_FALSE(back.motions[1].visible);
   EXPECT_EQ(m_workspace->groups()[2].motions.front().clip->positions, checkpoint.positions);
   EXPECT_EQ(m_workspace->groups()[2].colourIndex, 15);
+}
+
+TEST_F(KeptView, SamplesThatAreLeftOutStaySoWithTheirSet) {
+  m_workspace->sampleCurrentPath();
+  ASSERT_TRUE(idle());
+  const int drawn = m_workspace->groups().back().id;
+  m_workspace->setPinned(drawn, true);
+  m_workspace->save(QString::fromStdString(file("x.json").string()));
+  ASSERT_FALSE(m_window->isWindowModified());
+  m_workspace->setUsed({{drawn, 1}}, false);
+  EXPECT_TRUE(m_window->isWindowModified()) << "what was left out would be lost in silence";
+  ASSERT_NO_FATAL_FAILURE(saveAndOpen(file("x.json")));
+  EXPECT_FALSE(m_window->isWindowModified());
+  // Twice: what is offered is kept as it is, too.
+  ASSERT_NO_FATAL_FAILURE(saveAndOpen(file("x.json")));
+  child<QPushButton>(*m_window, "offerSample")->click();
+  ASSERT_TRUE(idle());
+  const std::vector<Motion>& motions = m_workspace->groups().back().motions;
+  ASSERT_EQ(motions.size(), 2U);
+  EXPECT_TRUE(motions[0].used);
+  EXPECT_FALSE(motions[1].used);
+  EXPECT_TRUE(motions[1].visible) << "it was hidden, too";
+  EXPECT_FALSE(m_window->isWindowModified());
 }
 
 TEST_F(KeptView, PinningASetIsAChangeOfTheDocument) {

@@ -20,21 +20,11 @@
 namespace marey::gui {
 namespace {
 
-class MouseJourney : public WindowTest {
+class MouseJourney : public DemoTest {
  protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
-
   template <typename T>
   T* inPanel(const char* panel, const char* name) {
     return child<T>(*m_window->showPanel(QString::fromLatin1(panel)), name);
-  }
-
-  bool idle() {
-    return waitUntil([this] { return m_jobs->idle(); });
   }
 
   void click(const char* panel, const char* name) {

@@ -20,15 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Shell : public WindowTest {
- protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
-  fs::path file(const char* name) const { return fs::path(m_folder.path().toStdString()) / name; }
-};
+class Shell : public DemoTest {};
 
 TEST_F(Shell, UndoAndRedoFollowTheHistoryAndNameTheEdit) {
   m_workspace->edit("Seed", [](Experiment& e) { e.seed = 7; });

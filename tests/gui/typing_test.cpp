@@ -14,13 +14,8 @@
 namespace marey::gui {
 namespace {
 
-class Typing : public WindowTest {
+class Typing : public DemoTest {
  protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
   QDoubleSpinBox* temperature() {
     return child<QDoubleSpinBox>(*m_window->showPanel("sampling"), "temperature0");
   }

@@ -23,16 +23,8 @@
 namespace marey::gui {
 namespace {
 
-class Views : public WindowTest {
+class Views : public DemoTest {
  protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
-  bool idle() {
-    return waitUntil([this] { return m_jobs->idle(); });
-  }
   /// The workspace's first natural clip as if it had no hips.
   ClipPtr withoutHips() const {
     Clip clip = *m_workspace->groups().front().motions.front().clip;
@@ -50,6 +42,41 @@ class Views : public WindowTest {
 
 double cpuMs() {
   return 1000.0 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// The place of the dark pixels of a natural figure, right of the legend.
+QRect figureIn(const render::Image& image) {
+  QRect out;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 3 * image.width / 10; x < image.width; ++x) {
+      const uint8_t* pixel = image.at(x, y);
+      if (std::max({pixel[0], pixel[1], pixel[2]}) < 70) out |= QRect(x, y, 1, 1);
+    }
+  return out;
+}
+
+TEST_F(Views, TheFitKeyFillsTheViewWithWhatIsShown) {
+  m_window->showPanel("scene");
+  auto& view = *child<SceneView>(*m_window, "sceneView");
+  SceneSettings settings = view.settings();
+  settings.shadow = settings.path = false;
+  settings.placement = render::Placement::RootAligned;
+  view.setSettings(settings);
+  const int natural = m_workspace->groups().front().id;
+  for (const bool far : {true, false}) {
+    m_workspace->showOnly({{natural, 0}});
+    settle();
+    view.scene().zoom(far ? 0.2 : 5.0);
+    view.setFocus();
+    QTest::keyClick(&view, Qt::Key_F);
+    settle(400);
+    const QRect figure = figureIn(pictureOf(view));
+    EXPECT_GT(figure.height(), 0.7 * view.height()) << far << ": it is small";
+    EXPECT_GT(figure.top(), 0) << far << ": it is cut";
+    EXPECT_LT(figure.bottom(), view.height() - 1) << far;
+    EXPECT_NEAR(figure.center().y(), 0.5 * view.height(), 0.15 * view.height()) << far;
+    EXPECT_NEAR(figure.center().x(), 0.5 * view.width(), 0.15 * view.width()) << far;
+  }
 }
 
 TEST_F(Views, ARefusedPlacementLeavesWhatIsPickedAndShowsTheWorld) {

@@ -19,16 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class BackgroundWork : public WindowTest {
+class BackgroundWork : public DemoTest {
  protected:
-  void SetUp() override {
-    WindowTest::SetUp();
-    openWindow();
-    openSmallDemo();
-  }
-  bool idle() {
-    return waitUntil([this] { return m_jobs->idle(); });
-  }
   void sampleTwo() {
     m_workspace->sampleCurrentPath();
     ASSERT_TRUE(idle());
@@ -48,7 +40,6 @@ class BackgroundWork : public WindowTest {
       if (status.id == job) return true;
     return false;
   }
-  fs::path file(const char* name) const { return fs::path(m_folder.path().toStdString()) / name; }
 };
 
 TEST_F(BackgroundWork, ASetStaysUntilTheFirstMotionsOfItsSuccessorAreThere) {

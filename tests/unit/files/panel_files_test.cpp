@@ -110,7 +110,7 @@ TEST_F(PanelFiles, ACancelledExportLeavesNothing) {
 TEST_F(PanelFiles, OnlyOverriddenFilesAreConverted) {
   Progress progress;
   exportMotions(request(ExportFormat::Bvh), progress);
-  auto files = importFiles({m_folder.string()});
+  auto files = importFiles({m_folder.string()}).files;
   ASSERT_EQ(files.size(), 2u);
   EXPECT_EQ(convertOverridden(files, m_folder / "converted", progress),
             std::vector<std::string>{m_folder.string()});

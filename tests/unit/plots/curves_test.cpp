@@ -74,7 +74,7 @@ TEST(MotionSets, TakeWhatIsUsedWhetherItIsShownOrHidden) {
   EXPECT_TRUE(sets[0].natural);
   EXPECT_EQ(sets[0].ids, (std::vector<MotionId>{{1, 0}, {1, 2}}));
   EXPECT_EQ(sets[1].ids, (std::vector<MotionId>{{2, 1}}));
-  EXPECT_EQ(countedText(sets), "Counted: Natural 2 of 3, MG 1 of 2");
+  EXPECT_EQ(countedText(sets), "Counted: Natural: 2 of 3; MG: 1 of 2");
   for (MotionGroup& group : groups)
     for (Motion& motion : group.motions) motion.visible = false;
   const auto hidden = motionSets(groups);
@@ -91,7 +91,7 @@ TEST(MotionSets, ClipsOfAnotherSkeletonThanMostAreCountedAsLeftOut) {
       1, "Natural", -1, {reordered(*plain), plain, walkerClip(2), oneJointFewer(*plain)})});
   ASSERT_EQ(sets.size(), 1U);
   EXPECT_EQ(sets[0].ids, (std::vector<MotionId>{{1, 1}, {1, 2}}));
-  EXPECT_EQ(countedText(sets), "Counted: Natural 2 of 4 (2 of another skeleton)");
+  EXPECT_EQ(countedText(sets), "Counted: Natural: 2 of 4 (2 of another skeleton)");
 }
 
 TEST(MotionSets, ARangeCutsClipsAndWantedPathsAlike) {

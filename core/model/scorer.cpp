@@ -200,7 +200,7 @@ std::vector<ClipScore> scoreClips(const MotionModel& model, std::span<const Clip
 
 std::string whyNotScored(const ModelInfo& info, const Clip& clip) {
   if (3 * clip.jointCount() != info.poseDim)
-    return fmt::format("another skeleton ({} joints, {} wanted)", clip.jointCount(),
+    return fmt::format("another skeleton ({} joints, the model has {} joints)", clip.jointCount(),
                        info.poseDim / 3);
   if (!info.skeleton || clip.skeleton->names == info.skeleton->names) return {};
   return otherJoints(*clip.skeleton, *info.skeleton);

@@ -50,6 +50,16 @@ double halfHeightAt(const Camera& camera, double depth) {
   return camera.orthographic ? 0.5 * camera.heightM : depth * std::tan(0.5 * camera.fovY);
 }
 
+/// The head is a ball around no joint.
+void addHead(std::vector<Vec3>& points, const BodyShape& shape, std::span<const Vec3> pose,
+             const Vec3& shift) {
+  if (shape.head < 0) return;
+  const Vec3 head = headCentre(shape, pose) + shift;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-shape.headRadiusM, shape.headRadiusM})
+      points.emplace_back(head + side * Vec3::Unit(axis));
+}
+
 /// A point on the line of sight through a pixel, and the line's direction.
 struct Sight {
   Vec3 origin, direction;
@@ -110,6 +120,7 @@ std::vector<Vec3> LiveScene::Internals::outline(bool relativeToFollowed) const {
       const Vec3& shift =
           shifts[relativeToFollowed ? 1 + static_cast<size_t>(std::round(at / stepS)) : 0];
       for (const Vec3& p : pose) points.emplace_back(p + shift);
+      addHead(points, track->shape(), pose, shift);
     }
   }
   if (relativeToFollowed || !marksInPlace()) return points;

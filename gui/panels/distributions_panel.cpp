@@ -114,11 +114,9 @@ class DistributionsPanel : public PlotPanel {
     m_joints = new QListWidget(this);
     m_joints->setObjectName(QStringLiteral("distributionsJoints"));
     m_joints->setSelectionMode(QAbstractItemView::ExtendedSelection);
-    m_joints->setMaximumWidth(104);
     m_joints->setToolTip(tr("Joints to plot; several with Ctrl or Shift"));
     m_map = new BodyMap(this);
     m_map->setObjectName(QStringLiteral("distributionsBodyMap"));
-    m_map->setMaximumWidth(150);  // the charts need the rest
     new ChartMenu(m_map, chartOutOf(workspace(), QStringLiteral("body-map"),
                                     [this] { return m_map->chart(); }));
     m_table = new ValueTable(this);
@@ -126,6 +124,9 @@ class DistributionsPanel : public PlotPanel {
     m_table->setToolTip(tr("W1: 1-Wasserstein distance to natural motion"));
     auto* row = new QHBoxLayout;
     content()->removeWidget(chartArea());
+    // The charts need the rest, two beside each other.
+    m_joints->setMaximumWidth(88);
+    m_map->setMaximumWidth(140);
     row->addWidget(m_joints);
     row->addWidget(chartArea(), 1);
     row->addWidget(m_table, 1);

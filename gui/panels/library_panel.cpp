@@ -75,9 +75,14 @@ class LibraryPanel : public QWidget {
     const std::map<int, int> least = {
         {MotionTree::Seconds, 46}, {MotionTree::Score, 50}, {MotionTree::Use, 36}};
     for (const auto& [column, width] : least)
-      m_view->header()->resizeSection(column,
-                                      std::max(width, m_view->header()->sectionSizeHint(column)));
+      m_view->header()->resizeSection(column, std::max(width, nameWidth(column)));
     m_view->setIndentation(14);
+  }
+
+  int nameWidth(int column) const {
+    constexpr int kAround = 14;
+    const QString name = m_model.headerData(column, Qt::Horizontal, Qt::DisplayRole).toString();
+    return m_view->header()->fontMetrics().horizontalAdvance(name) + kAround;
   }
 
   MotionId idAt(const QModelIndex& index) const {

@@ -98,8 +98,8 @@ void MainWindow::buildDocks(const std::vector<PanelSpec>& panels) {
   const auto size = [&](PanelArea area, const QList<int>& sizes) {
     if (areas.contains(area)) m_docks->setSplitterSizes(areas[area], sizes);
   };
-  size(PanelArea::Centre, {270, 670, 560});
-  size(PanelArea::Plots, {320, 380});
+  size(PanelArea::Centre, {300, 640, 560});
+  size(PanelArea::Plots, {400, 300});
   size(PanelArea::Bottom, {665, 215});
   m_firstLayout = m_docks->saveState();
 }

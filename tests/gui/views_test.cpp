@@ -70,10 +70,13 @@ TEST_F(Views, TheFitKeyFillsTheViewWithWhatIsShown) {
     view.setFocus();
     QTest::keyClick(&view, Qt::Key_F);
     settle(400);
-    const QRect figure = figureIn(pictureOf(view));
+    const render::Image picture = pictureOf(view);
+    render::writePng(far ? "fit-far.actual.png" : "fit-near.actual.png", picture);  // to be seen
+    const QRect figure = figureIn(picture);
     EXPECT_GT(figure.height(), 0.7 * view.height()) << far << ": it is small";
     EXPECT_GT(figure.top(), 0) << far << ": it is cut";
     EXPECT_LT(figure.bottom(), view.height() - 1) << far;
+    EXPECT_LT(figure.height(), 0.97 * view.height()) << far;
     EXPECT_NEAR(figure.center().y(), 0.5 * view.height(), 0.15 * view.height()) << far;
     EXPECT_NEAR(figure.center().x(), 0.5 * view.width(), 0.15 * view.width()) << far;
   }

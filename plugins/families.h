@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "model/motion_model.h"
+#include "model/model_family.h"
 
 namespace marey {
 

@@ -24,9 +24,7 @@ void run(Options& o, const Context& context, const std::string& what, Measure me
   o.spec.seed = context.seed;
   o.spec.reference = !o.noReference;
   o.spec.weights = weightPrecisionNamed(o.weights);
-  const ModelFamily& family =
-      familyNamed(JsonReader(o.spec.config, o.config).optional<std::string>("family", "moglow"),
-                  modelFamilies(), o.config);
+  const ModelFamily& family = familyOf(o.spec.config, modelFamilies(), o.config);
   Progress progress = context.progress("bench " + what);
   const ModelBenchResult r = measure(o.spec, family, progress);
   const double frames = o.spec.batch * 1000.0 / r.msPerFrame;

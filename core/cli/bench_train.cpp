@@ -20,9 +20,7 @@ void run(Options& o, const Context& context) {
   o.spec.origin = o.config;
   o.spec.seed = context.seed;
   o.spec.reference = !o.noReference;
-  const ModelFamily& family =
-      familyNamed(JsonReader(o.spec.config, o.config).optional<std::string>("family", "moglow"),
-                  modelFamilies(), o.config);
+  const ModelFamily& family = familyOf(o.spec.config, modelFamilies(), o.config);
   Progress progress = context.progress("bench train");
   const TrainBenchResult r = benchTrain(o.spec, family, progress);
   const double frames = o.spec.batch * o.spec.frames * 1000.0 / r.msPerStep;

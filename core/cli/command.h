@@ -14,7 +14,7 @@
 #include "base/job.h"
 #include "base/json.h"
 #include "base/ranks.h"
-#include "model/motion_model.h"
+#include "model/model_family.h"
 
 namespace marey::cli {
 

@@ -10,7 +10,6 @@
 #include "model/conformance.h"
 #include "model/likelihood.h"
 #include "model/model_card.h"
-#include "moglow/family.h"
 #include "motion/roles.h"
 
 namespace marey::cli {
@@ -24,9 +23,7 @@ struct Options {
 
 ModelInfo describeConfig(const std::string& path) {
   const Json config = readJson(path);
-  return familyNamed(JsonReader(config, path).optional<std::string>("family", "moglow"),
-                     modelFamilies(), path)
-      .describe(config, path);
+  return familyOf(config, modelFamilies(), path).describe(config, path);
 }
 
 Json infoJson(const ModelInfo& info) {
@@ -86,9 +83,17 @@ void runInfo(const Options& o, const Context& context) {
 void runImport(const Options& o, const Context& context) {
   const Standardiser standardiser =
       o.data.empty() ? Standardiser{} : standardiserFromArchive(o.data);
-  const auto model =
-      moglow::importCheckpoint(o.checkpoint, readJson(o.config), o.config, standardiser,
-                               std::filesystem::path(o.out).stem().string(), o.stateDict);
+  const Json config = readJson(o.config);
+  const ModelFamily& family = familyOf(config, modelFamilies(), o.config);
+  if (!family.importCheckpoint)
+    throw InputError({.path = o.config, .item = "key 'family'"},
+                     "a family whose authors' checkpoints are known", "'" + family.name + "'");
+  const auto model = family.importCheckpoint({.checkpoint = o.checkpoint,
+                                              .config = config,
+                                              .configOrigin = o.config,
+                                              .standardiser = standardiser,
+                                              .variant = std::filesystem::path(o.out).stem(),
+                                              .stateDict = o.stateDict});
   writeTensorFile(o.out, model->save());
   Json result = infoJson(model->info());
   result["written"] = o.out;

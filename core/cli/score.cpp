@@ -46,6 +46,7 @@ class Scores {
     const LikelihoodSummary s = summary();
     const double mean = s.nats;
     Json out = {{"clips", std::move(clips)},
+                {"kind", nameOf(m_info.density)},
                 {"unit", m_unit},
                 {"frames", s.frames},
                 {"first_frame", s.firstFrame},
@@ -205,6 +206,7 @@ Scores scoreFiles(const Options& o, const MotionModel& model, const Context& con
 void run(const Options& o, const Context& context) {
   const auto model =
       loadModel(o.model, modelFamilies(), {.weights = weightPrecisionNamed(o.weights)});
+  requireDensity(*model);
   io::InputReport report;
   const Scores scores = scoreFiles(o, *model, context, report);
   if (!context.ranks->first()) return;

@@ -5,8 +5,8 @@
 #include "families.h"
 
 #include "cli/command.h"
+#include "model/build.h"
 #include "model/likelihood.h"
-#include "model/trainer.h"
 
 namespace marey::cli {
 namespace {
@@ -17,6 +17,32 @@ struct Options {
   int64_t steps = 0;
   double minutes = 0.0;
 };
+
+Json json(const TrainResult& r) {
+  Json out = {{"steps", r.steps},
+              {"objective", r.objective.name},
+              {"unit", shownUnit(r.objective)},
+              {"train", finiteOrNull(r.train)},
+              {"valid", finiteOrNull(r.valid)},
+              {"best", r.best.string()},
+              {"last", r.last.string()}};
+  if (!r.objective.likelihood) return out;
+  out["train_bits_per_frame"] = finiteOrNull(r.train);
+  out["valid_bits_per_frame"] = finiteOrNull(r.valid);
+  out["test_nats_per_frame"] = finiteOrNull(r.testNatsPerFrame);
+  out["test_unit"] = kLikelihoodUnit;
+  return out;
+}
+
+std::string text(const TrainResult& r) {
+  std::string out = fmt::format("{} steps", r.steps);
+  if (std::isfinite(r.train))
+    out += fmt::format("; {:.4g} {} in training", r.train, shownUnit(r.objective));
+  if (std::isfinite(r.valid)) out += fmt::format(", {:.4g} at best in validation", r.valid);
+  if (std::isfinite(r.testNatsPerFrame))
+    out += fmt::format("; held-out clips {:.1f} {}", r.testNatsPerFrame, kLikelihoodUnit);
+  return out + "\n" + r.best.string();
+}
 
 void run(Options& o, const Context& context) {
   o.request.config = readJson(o.config);
@@ -37,21 +63,7 @@ void run(Options& o, const Context& context) {
   const TrainResult result = train(data, o.request, modelFamilies(), progress);
   progress.report(1.0, fmt::format("step {}", result.steps));
   if (!leads) return;
-  const Json json = {{"steps", result.steps},
-                     {"train_bits_per_frame", finiteOrNull(result.trainBitsPerFrame)},
-                     {"valid_bits_per_frame", finiteOrNull(result.validBitsPerFrame)},
-                     {"test_nats_per_frame", finiteOrNull(result.testNatsPerFrame)},
-                     {"test_unit", kLikelihoodUnit},
-                     {"best", result.best.string()},
-                     {"last", result.last.string()}};
-  std::string text = fmt::format("{} steps", result.steps);
-  if (std::isfinite(result.trainBitsPerFrame))
-    text += fmt::format("; {:.1f} bits per frame in training", result.trainBitsPerFrame);
-  if (std::isfinite(result.validBitsPerFrame))
-    text += fmt::format(", {:.1f} at best in validation", result.validBitsPerFrame);
-  if (std::isfinite(result.testNatsPerFrame))
-    text += fmt::format("; held-out clips {:.1f} {}", result.testNatsPerFrame, kLikelihoodUnit);
-  context.print(json, text + "\n" + result.best.string());
+  context.print(json(result), text(result));
 }
 
 }  // namespace
@@ -59,7 +71,7 @@ void run(Options& o, const Context& context) {
 void addTrainCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
   auto* command = addCommand(
-      app, context, "train", "Train a model by maximum likelihood",
+      app, context, "train", "Train or build a model of a data set",
       "marey train resources/models/moglow-small.json --data walk.marey "
       "--out runs/small --minutes 60",
       [o, &context] { run(*o, context); }, Processes::Own);

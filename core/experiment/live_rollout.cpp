@@ -36,7 +36,7 @@ LiveRollout::LiveRollout(std::shared_ptr<const MotionModel> model, const LiveOpt
   const int rows = info.context + 1 + info.lookahead;
   m_bodyVelocity = inBodyFrame(m_velocity.facingRad);
   m_window = controlOf(m_bodyVelocity, info.features.fps).replicate(1, rows);
-  m_state = m_model->start(1, {});
+  m_state = requireRollout(*m_model).start(1, {});
   const auto warmUp = static_cast<int>(std::lround(options.warmUpS * info.features.fps));
   for (int t = 0; t < warmUp; ++t) step();
 }
@@ -50,10 +50,11 @@ void LiveRollout::step() {
   m_window.leftCols(kept) = past;
   m_window.rightCols(m_window.cols() - kept) =
       controlOf(m_bodyVelocity, info.features.fps).replicate(1, 1 + info.lookahead);
-  Matrix latent(1, info.poseDim);
-  drawLatent(m_options.seed, m_options.sample, m_generated, m_options.temperature,
-             m_model->baseDegreesOfFreedom(), {latent.data(), static_cast<size_t>(info.poseDim)});
-  m_pose = m_model->sampleFrame(m_state, m_window, latent);
+  Matrix latent(1, info.latent.width);
+  const bool perClip = info.latent.per == LatentSpec::Per::Clip;
+  drawLatent(m_options.seed, m_options.sample, perClip ? 0 : m_generated, m_options.temperature,
+             info.latent.degreesOfFreedom, {latent.data(), static_cast<size_t>(info.latent.width)});
+  m_pose = m_model->rollout()->sampleFrame(m_state, m_window, latent);
   if (!m_pose.allFinite())
     throw NumericError(fmt::format(
         "the motion left the range of numbers at frame {}: expected finite poses, found NaN or "

@@ -178,7 +178,8 @@ std::string whyNot(const MotionModel& model, const Experiment& experiment, const
 /// Models with different contexts are compared on the frames that all of them score.
 void summariseLikelihoods(std::vector<SystemResult>& systems) {
   int first = 0;
-  for (const SystemResult& s : systems) first = std::max(first, s.info.context);
+  for (const SystemResult& s : systems)
+    if (s.info.density != DensityKind::None) first = std::max(first, s.info.context);
   for (SystemResult& s : systems) {
     s.naturalLikelihood = summarise(s.info, s.naturalScores, first);
     s.heldOutLikelihood = summarise(s.info, s.heldOutScores, first);

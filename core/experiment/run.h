@@ -13,7 +13,7 @@
 #include "experiment/sample_set.h"
 #include "io/input_report.h"
 #include "model/likelihood.h"
-#include "model/motion_model.h"
+#include "model/model_family.h"
 #include "model/scorer.h"
 
 namespace marey {

@@ -93,9 +93,7 @@ TrainingBatch Batches::gather(const std::vector<int64_t>& windows) const {
   const auto index = torch::tensor(rows).to(m_pose.device());
   return {m_pose.index_select(0, index).view({b, m_windowFrames, -1}),
           m_control.index_select(0, index).view({b, m_windowFrames, -1}),
-          torch::tensor(mask).view({b, m_windowFrames}).to(m_pose.device()),
-          {},
-          {}};
+          torch::tensor(mask).view({b, m_windowFrames}).to(m_pose.device())};
 }
 
 TrainingFrames Batches::frames(int64_t context, int64_t lookahead) const {

@@ -3,7 +3,7 @@
 
 #include "base/hash.h"
 #include "model/linear_gaussian.h"
-#include "model/motion_model.h"
+#include "model/model_family.h"
 
 namespace marey {
 namespace {
@@ -67,18 +67,39 @@ std::unique_ptr<MotionModel> loadModel(const std::string& path,
   return family.load(std::move(file), path, options);
 }
 
-std::vector<SequenceScore> MotionModel::observeMany(std::span<RolloutState> states,
-                                                    std::span<const ObservedSequence> sequences,
-                                                    const std::function<void()>& between) const {
-  std::vector<SequenceScore> out;
-  for (size_t i = 0; i < sequences.size(); ++i) {
-    between();
-    if (sequences[i].targets != nullptr)
-      throw InputError({.path = info().family}, "a family that tells poses from what is scored",
-                       "one that does not");
-    out.push_back(observe(states[i], *sequences[i].poses, *sequences[i].controls));
-  }
-  return out;
+const ModelFamily& familyOf(const Json& config, std::span<const ModelFamily> families,
+                            const std::string& origin) {
+  JsonReader reader(config, origin);
+  if (reader.has("family"))
+    return familyNamed(reader.required<std::string>("family"), families, origin);
+  for (const auto& family : families)
+    if (family.recognises && family.recognises(config)) return family;
+  throw InputError({.path = origin, .item = "key 'family'"}, "the name of a model family", "none");
+}
+
+std::string nameOf(DensityKind kind) {
+  if (kind == DensityKind::Exact) return "exact";
+  return kind == DensityKind::Bound ? "bound" : "none";
+}
+
+SequenceScore DensityEstimator::observe(RolloutState& state, const Matrix& poses,
+                                        const Matrix& controls) const {
+  const ObservedSequence one{&poses, &controls};
+  return std::move(observeMany({&state, 1}, {&one, 1}, [] {}).front());
+}
+
+const FrameGenerator& requireRollout(const MotionModel& model) {
+  if (const auto* ability = model.rollout()) return *ability;
+  const ModelInfo& info = model.info();
+  throw InputError({.path = info.variant.empty() ? info.family : info.variant},
+                   "a model that makes motion frame by frame", "one that needs all control first");
+}
+
+const DensityEstimator& requireDensity(const MotionModel& model) {
+  if (const auto* ability = model.density()) return *ability;
+  const ModelInfo& info = model.info();
+  throw InputError({.path = info.variant.empty() ? info.family : info.variant},
+                   "a model with a likelihood", "one that has none (" + info.family + ")");
 }
 
 Json toJson(const FeatureSpec& spec) {

@@ -43,6 +43,8 @@ double worse(double a, double b) {
 
 ConformanceErrors checkConformance(const MotionModel& model, const std::string& path) {
   const ModelInfo& info = model.info();
+  const DensityEstimator& density = requireDensity(model);
+  const FrameGenerator& generator = requireRollout(model);
   TensorFile file{.tensors = readNpz(path)};
   const auto& x = file.get("x", {-1, -1, info.poseDim}, path);
   const int64_t batch = x.shape[0], frames = x.shape[1] - info.context;
@@ -51,9 +53,9 @@ ConformanceErrors checkConformance(const MotionModel& model, const std::string& 
                fmt::format("more than {} frames", info.context), "{}", x.shape[1]);
   const auto& control =
       file.get("control", {batch, x.shape[1] + info.lookahead, info.controlDim}, path);
-  const auto& z = file.get("z", {batch, frames, info.poseDim}, path);
+  const auto& z = file.get("z", {batch, frames, info.latent.width}, path);
   const auto& loglik = file.get("loglik_nats", {batch, frames}, path);
-  const auto& zIn = file.get("z_in", {batch, -1, info.poseDim}, path);
+  const auto& zIn = file.get("z_in", {batch, -1, info.latent.width}, path);
   const auto& sampled = file.get("x_sampled", {batch, zIn.shape[1], info.poseDim}, path);
   const auto wantedLoglik = loglik.toDoubles();
   const auto& s = info.standardiser;
@@ -64,16 +66,16 @@ ConformanceErrors checkConformance(const MotionModel& model, const std::string& 
   for (int64_t b = 0; b < batch; ++b) {
     const Matrix poses = pose.toModel(element(x, b)),
                  control_b = controls.toModel(element(control, b));
-    RolloutState state = model.start(1, flatRow(poses, 0, info.context));
-    const SequenceScore score = model.observe(state, poses.bottomRows(frames), control_b);
+    RolloutState state = density.start(1, flatRow(poses, 0, info.context));
+    const SequenceScore score = density.observe(state, poses.bottomRows(frames), control_b);
     out.latent = worse(out.latent, (score.latent - element(z, b)).cwiseAbs().maxCoeff());
     for (int64_t t = 0; t < frames; ++t)
       out.loglik = worse(out.loglik, std::abs(score.loglikNats[static_cast<size_t>(t)] -
                                               wantedLoglik[static_cast<size_t>(b * frames + t)]));
-    RolloutState rollout = model.start(1, {});
+    RolloutState rollout = generator.start(1, {});
     const Matrix latents = element(zIn, b), wanted = element(sampled, b);
     for (int64_t t = 0; t < latents.rows(); ++t) {
-      const Matrix got = pose.toVectors(model.sampleFrame(
+      const Matrix got = pose.toVectors(generator.sampleFrame(
           rollout, flatRow(control_b, t, info.context + 1 + info.lookahead), latents.row(t)));
       out.sample = worse(out.sample, (got - wanted.row(t)).cwiseAbs().maxCoeff());
     }

@@ -22,7 +22,13 @@ double floorDirectionsOf(const ModelInfo& info) {
 
 LikelihoodSummary summarise(const ModelInfo& info, std::span<const ClipScore> scores,
                             int firstFrame) {
-  LikelihoodSummary out{.firstFrame = firstFrame};
+  LikelihoodSummary out{.firstFrame = firstFrame,
+                        .nats = kNaN,
+                        .linearGaussian = kNaN,
+                        .floorDirections = kNaN,
+                        .effectiveDimensions = kNaN,
+                        .natsPerEffectiveDimension = kNaN};
+  if (info.density == DensityKind::None) return out;
   double nats = 0.0, yardstick = 0.0;
   for (const ClipScore& score : scores) {
     const long skipped = std::max(0, firstFrame - score.firstFrame);
@@ -63,6 +69,7 @@ std::string tooShortText(const LikelihoodSummary& s) {
 }
 
 std::string floorText(const ModelInfo& info) {
+  if (info.density == DensityKind::None) return "This model has no likelihood.";
   if (info.observation.none())
     return "No floor: the density is of poses as they are, and where bones are constant its number "
            "hangs on how constant they are.";

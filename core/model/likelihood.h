@@ -22,8 +22,8 @@ struct ShortClip {
 struct LikelihoodSummary {
   int clips = 0;
   long frames = 0;
-  int firstFrame = 0;           ///< scored frames start here in every clip
-  double nats = 0.0;            ///< mean over frames; NaN without frames
+  int firstFrame = 0;  ///< scored frames start here in every clip
+  double nats = 0.0;   ///< mean over frames; NaN without frames, or where the model has none
   double linearGaussian = 0.0;  ///< of the same frames; NaN for models without a yardstick
   double floorDirections = 0.0, effectiveDimensions = 0.0;  ///< NaN without a floor
   double natsPerEffectiveDimension = 0.0;                   ///< NaN without a floor

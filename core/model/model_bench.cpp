@@ -90,22 +90,26 @@ struct Bench {
 class Sampling {
  public:
   Sampling(const MotionModel& model, const ModelBenchSpec& spec)
-      : m_model(model), m_spec(spec), m_state(model.start(spec.batch, {})) {}
+      : m_model(model),
+        m_generator(requireRollout(model)),
+        m_spec(spec),
+        m_state(m_generator.start(spec.batch, {})) {}
 
   double frame(int t) {
     const ModelInfo& info = m_model.info();
     const auto at = static_cast<uint32_t>(t);
-    const long window = static_cast<long>(info.context + 1 + info.lookahead) * info.controlDim;
-    const Matrix control = normalMatrix(m_spec.seed, 0, at, m_spec.batch, window),
-                 latent = normalMatrix(m_spec.seed, 1, at, m_spec.batch, info.poseDim);
+    const Matrix control =
+                     normalMatrix(m_spec.seed, 0, at, m_spec.batch, info.controlWindowWidth()),
+                 latent = normalMatrix(m_spec.seed, 1, at, m_spec.batch, info.latent.width);
     const auto begin = Clock::now();
-    m_pose = m_model.sampleFrame(m_state, control, latent);
+    m_pose = m_generator.sampleFrame(m_state, control, latent);
     return msSince(begin);
   }
   const Matrix& pose() const { return m_pose; }
 
  private:
   const MotionModel& m_model;
+  const FrameGenerator& m_generator;
   const ModelBenchSpec& m_spec;
   RolloutState m_state;
   Matrix m_pose;
@@ -126,10 +130,11 @@ struct Clips {
   /// Milliseconds for all of them.
   double score(const MotionModel& model, Progress& progress,
                std::vector<SequenceScore>& out) const {
+    const DensityEstimator& density = requireDensity(model);
     std::vector<RolloutState> states;
-    for (size_t b = 0; b < poses.size(); ++b) states.push_back(model.start(1, {}));
+    for (size_t b = 0; b < poses.size(); ++b) states.push_back(density.start(1, {}));
     const auto begin = Clock::now();
-    out = model.observeMany(states, observed, [&] { progress.throwIfCancelled(); });
+    out = density.observeMany(states, observed, [&] { progress.throwIfCancelled(); });
     return msSince(begin);
   }
 
@@ -147,6 +152,9 @@ TensorFile randomModel(const Json& config, const std::string& origin, const Mode
       info.controlDim,
       info.poseDim == 3 * walkerSkeleton()->jointCount() ? walkerSkeleton() : nullptr,
       {}};
+  if (!family.makeTrainee)
+    throw InputError({.path = origin, .item = "key 'family'"}, "a family that is trained",
+                     "'" + family.name + "'");
   const Trainee trainee = family.makeTrainee(config, origin, data, seed);
   info.config = trainee.config;
   info.skeleton = data.skeleton;

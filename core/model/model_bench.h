@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/job.h"
-#include "model/motion_model.h"
+#include "model/model_family.h"
 
 namespace marey {
 

@@ -1,5 +1,5 @@
-// What every family of generative motion models offers to the sampler, the scorer, the
-// command line and the window. No libtorch type appears here.
+// What anything that makes motion offers to the sampler, the scorer, the command line and the
+// window: facts about itself, and abilities that are there or not. No libtorch type appears here.
 #pragma once
 
 #include <any>
@@ -30,6 +30,26 @@ struct Standardiser {
 
 struct LinearGaussian;  // model/linear_gaussian.h
 
+/// What a motion is drawn from, beside its control.
+struct LatentSpec {
+  enum class Per { Frame, Clip };
+
+  int width = 0;         ///< values of a draw; 0: none, equal control gives equal motion
+  Per per = Per::Frame;  ///< whether every frame has a draw of its own, or a whole motion one
+  double degreesOfFreedom = 0.0;  ///< of a Student-t; 0: standard normal
+
+  bool operator==(const LatentSpec&) const = default;
+};
+
+/// What a model's log-likelihood is.
+enum class DensityKind {
+  None,   ///< it has none
+  Exact,  ///< the logarithm of its density
+  Bound   ///< a lower bound of that
+};
+/// "none", "exact", "bound".
+std::string nameOf(DensityKind kind);
+
 struct ModelInfo {
   std::string family;   ///< "moglow", ...
   std::string variant;  ///< free name of the configuration, "moglow-small"
@@ -37,6 +57,9 @@ struct ModelInfo {
   int context = 0;    ///< tau: past frames that the model sees
   int lookahead = 0;  ///< future control frames that it sees
   int64_t parameters = 0;
+  LatentSpec latent;
+  DensityKind density = DensityKind::None;
+  bool causal = true;  ///< false: it must know the control of a whole motion before its first frame
   FeatureSpec features;
   std::shared_ptr<const Skeleton> skeleton;  ///< null for models imported without one
   Standardiser standardiser;
@@ -46,6 +69,13 @@ struct ModelInfo {
   Json config;       ///< hyper-parameters as used
   Json provenance;   ///< data set, steps, metrics, command
   std::string hash;  ///< content hash of the weights
+
+  /// Equal control always gives the same motion.
+  bool deterministic() const { return latent.width == 0; }
+  /// Values of the control that a frame sees: frames t - context .. t + lookahead.
+  long controlWindowWidth() const {
+    return static_cast<long>(context + 1 + lookahead) * controlDim;
+  }
 };
 
 /// Recurrent state and pose history of a batch of rollouts. A value: copying it forks the
@@ -54,9 +84,42 @@ struct RolloutState {
   std::any value;
 };
 
-/// Latents and log-likelihoods of a sequence.
+/// Makes motion frame by frame, from the past alone (beside the control's look-ahead).
+/// Thread rule: const functions may run at the same time on different states.
+class FrameGenerator {
+ public:
+  virtual ~FrameGenerator() = default;
+  /// Rollouts whose history is `history` ([B, context * D], oldest frame first, in the units of the
+  /// representation); an empty matrix stands for the mean pose. Recurrent state is zero.
+  virtual RolloutState start(int batch, const Matrix& history) const = 0;
+  /// The next pose [B, D] given latents [B, latent.width] and controls
+  /// [B, (context + 1 + lookahead) * C], frames t - context .. t + lookahead of frame t. A latent
+  /// per clip is the same in every frame.
+  virtual Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,
+                             const Matrix& latent) const = 0;
+};
+
+/// What a whole motion is made of.
+struct ClipRequest {
+  Matrix history;   ///< [context, D]; empty: the mean pose
+  Matrix controls;  ///< [context + T + lookahead, C]
+  Matrix latents;   ///< [T, latent.width], or [1, latent.width] where that is per clip
+};
+
+/// Makes whole motions, all of whose control is known.
+class ClipGenerator {
+ public:
+  virtual ~ClipGenerator() = default;
+  /// The poses [T, D] of every request; a motion does not depend on the others. `between` is called
+  /// now and then and may throw.
+  virtual std::vector<Matrix> generate(std::span<const ClipRequest> requests,
+                                       const std::function<void()>& between) const = 0;
+};
+
+/// Log-likelihoods of a sequence.
 struct SequenceScore {
-  Matrix latent;                   ///< [T, D]
+  /// [T, W]: what the poses come from; no columns in families that do not know it.
+  Matrix latent;
   std::vector<double> loglikNats;  ///< [T], density of standardised poses
 };
 
@@ -66,6 +129,39 @@ struct ObservedSequence {
   const Matrix* controls = nullptr;
   /// [T, D]: what is scored in place of the poses, which stay the history; null: the poses.
   const Matrix* targets = nullptr;
+};
+
+/// Says how likely motion is, frame by frame. ModelInfo::density tells whether that is exact.
+class DensityEstimator {
+ public:
+  virtual ~DensityEstimator() = default;
+  /// As FrameGenerator::start.
+  virtual RolloutState start(int batch, const Matrix& history) const = 0;
+  /// Advances over observed frames of many sequences, each with the state of a batch of one and
+  /// going on from it. A sequence's result does not depend on the others. `between` is called every
+  /// few frames and may throw; the states are then of no use.
+  virtual std::vector<SequenceScore> observeMany(std::span<RolloutState> states,
+                                                 std::span<const ObservedSequence> sequences,
+                                                 const std::function<void()>& between) const = 0;
+  /// The same for one: poses [T, D] and controls [context + T + lookahead, C].
+  SequenceScore observe(RolloutState& state, const Matrix& poses, const Matrix& controls) const;
+};
+
+/// A motion of which some values are unknown.
+struct CompletionRequest {
+  Matrix poses;     ///< [T, D]; what is not known is of no effect
+  Matrix known;     ///< [T, D]: 1 where a value is known, else 0
+  Matrix controls;  ///< [context + T + lookahead, C]
+  Matrix latents;   ///< as ClipRequest::latents
+};
+
+/// Fills in what is unknown.
+class MotionCompleter {
+ public:
+  virtual ~MotionCompleter() = default;
+  /// Poses [T, D]: the known values as they were, the others as the model has them.
+  virtual Matrix complete(const CompletionRequest& request,
+                          const std::function<void()>& between) const = 0;
 };
 
 /// How a model computes. The engine's results are the same bits for any batch and thread count on
@@ -80,73 +176,22 @@ struct LoadOptions {
   WeightPrecision weights = WeightPrecision::Float32;
 };
 
-/// Thread rule: const functions may run at the same time on different states.
+/// Something that makes motion. Abilities are null where it lacks them; they live as long as it.
 class MotionModel {
  public:
   virtual ~MotionModel() = default;
   virtual const ModelInfo& info() const = 0;
-
-  /// Rollouts whose history is `history` ([B, context * D], oldest frame first, in metres); an
-  /// empty matrix stands for the mean pose. Recurrent state is zero.
-  virtual RolloutState start(int batch, const Matrix& history) const = 0;
-  /// The next pose [B, D] in metres given latents [B, D] of the base distribution and controls
-  /// [B, (context + 1 + lookahead) * C], frames t - context .. t + lookahead of frame t.
-  virtual Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,
-                             const Matrix& latent) const = 0;
-  /// Advances over observed frames: poses [T, D] and controls [context + T + lookahead, C] of a
-  /// batch of one, continuing from `state`.
-  virtual SequenceScore observe(RolloutState& state, const Matrix& poses,
-                                const Matrix& controls) const = 0;
-  /// The same for many sequences, each with the state of a batch of one. Where a family has a way
-  /// to advance them together it does, and a sequence's result does not depend on the others.
-  /// `between` is called every few frames and may throw; the states are then of no use. A family
-  /// whose models have observation noise overrides this and heeds `targets`.
-  virtual std::vector<SequenceScore> observeMany(std::span<RolloutState> states,
-                                                 std::span<const ObservedSequence> sequences,
-                                                 const std::function<void()>& between) const;
-  /// Degrees of freedom of a Student-t base; 0 for a standard normal.
-  virtual double baseDegreesOfFreedom() const = 0;
+  virtual const FrameGenerator* rollout() const { return nullptr; }
+  virtual const ClipGenerator* wholeClip() const { return nullptr; }
+  virtual const DensityEstimator* density() const { return nullptr; }
+  virtual const MotionCompleter* completion() const { return nullptr; }
   /// Weights, standardiser and configuration as they are stored.
   virtual TensorFile save() const = 0;
 };
 
-class TrainableModel;  // model/trainable.h: libtorch inside
-
-/// What a new network must know of its data.
-struct TraineeData {
-  int poseDim = 0, controlDim = 0;
-  std::shared_ptr<const Skeleton> skeleton;
-  Standardiser standardiser;
-};
-
-/// A freshly made network, ready to be trained.
-struct Trainee {
-  std::shared_ptr<TrainableModel> net;
-  Json config;  ///< hyper-parameters as really used
-};
-
-/// A family in the explicit list of families (plugins/families.h).
-struct ModelFamily {
-  std::string name;
-  /// From a stored model. Strict: unknown, missing, mis-shaped or non-finite tensors throw
-  /// InputError naming `origin`. The file is handed over, so that weights are held once.
-  std::function<std::unique_ptr<MotionModel>(TensorFile, const std::string& origin,
-                                             const LoadOptions& options)>
-      load;
-  /// Number of trainable parameters of a configuration, without building data.
-  std::function<ModelInfo(const Json& config, const std::string& origin)> describe;
-  /// Random weights from `seed`.
-  std::function<Trainee(const Json& modelConfig, const std::string& origin, const TraineeData& data,
-                        uint64_t seed)>
-      makeTrainee;
-};
-
-/// Stored models carry "family" in their metadata. Throws InputError for unknown families.
-std::unique_ptr<MotionModel> loadModel(const std::string& path,
-                                       std::span<const ModelFamily> families,
-                                       const LoadOptions& options = {});
-const ModelFamily& familyNamed(const std::string& name, std::span<const ModelFamily> families,
-                               const std::string& origin);
+/// Throws InputError naming the model where it lacks the ability.
+const FrameGenerator& requireRollout(const MotionModel& model);
+const DensityEstimator& requireDensity(const MotionModel& model);
 
 /// Throws InputError naming `path` unless the clip has the model's joints in the model's order. A
 /// model without a skeleton (an imported one) only says how many it has.

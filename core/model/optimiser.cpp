@@ -6,11 +6,6 @@
 namespace marey {
 namespace {
 
-torch::Tensor scoredMask(const TrainableModel& net, const TrainingBatch& batch) {
-  const int64_t first = net.context(), ahead = net.lookahead();
-  return batch.mask.narrow(1, first, batch.mask.size(1) - first - ahead);
-}
-
 double normOf(const std::vector<torch::Tensor>& tensors) {
   std::vector<torch::Tensor> norms;
   for (const auto& t : tensors) norms.push_back(t.norm());
@@ -19,44 +14,39 @@ double normOf(const std::vector<torch::Tensor>& tensors) {
 
 }  // namespace
 
-torch::Tensor sumOfLogLikelihood(TrainableModel& net, const TrainingBatch& batch) {
-  return (net.logLikelihood(batch) * scoredMask(net, batch)).sum();
-}
-
-double scoredFrames(const TrainableModel& net, const TrainingBatch& batch) {
-  return scoredMask(net, batch).sum().item<double>();
-}
-
 Optimiser::Optimiser(TrainableModel& net, const TrainingConfig& config, nn::ProcessGroup& group)
     : adam(net, net.execution), m_net(net), m_config(config), m_group(group) {}
 
-double Optimiser::gradientsOf(const TrainingBatch& batch) {
-  const double frames = std::max(1.0, scoredFrames(m_net, batch));
+std::vector<double> Optimiser::gradientsOf(const TrainingBatch& batch) {
+  const double weight = std::max(1.0, m_net.weight(batch));
   const int64_t windows = batch.pose.size(0), parts = int64_t{m_config.accumulate},
                 rank = m_group.rank().rank, size = m_group.rank().size;
-  double loss = 0.0;
+  std::vector<double> losses(1 + m_net.objective().terms.size(), 0.0);
   for (auto& p : m_net.parameters()) p.mutable_grad() = torch::Tensor();
   for (int64_t part = rank * parts; part < (rank + 1) * parts; ++part) {
     const int64_t first = windows * part / (size * parts),
                   count = windows * (part + 1) / (size * parts) - first;
     if (count == 0) continue;
-    // A share of the mean over the frames of the whole batch.
-    const auto share = -sumOfLogLikelihood(m_net, batch.narrow(first, count)) / frames;
+    // A share of the mean over the whole batch.
+    const Loss loss = m_net.loss(batch.narrow(first, count));
+    const auto share = loss.sum / weight;
     const double value = share.item<double>();
-    loss += value;
+    losses[0] += value;
+    for (size_t i = 0; i < loss.terms.size(); ++i)
+      losses.at(i + 1) += loss.terms[i].second.item<double>() / weight;
     if (std::isfinite(value)) share.backward();
   }
-  return loss;
+  return losses;
 }
 
-double Optimiser::summedOverProcesses(double loss) {
-  if (m_group.rank().size == 1) return loss;
+void Optimiser::sumOverProcesses(std::vector<double>& losses) {
+  if (m_group.rank().size == 1) return;
   const torch::NoGradGuard guard;
   std::vector<torch::Tensor> parts;
   auto parameters = m_net.parameters();
   for (const auto& p : parameters)
     parts.push_back((p.grad().defined() ? p.grad() : torch::zeros_like(p)).flatten());
-  parts.push_back(torch::full({1}, loss, parts.front().options()));
+  parts.push_back(torch::tensor(losses, torch::kFloat64).to(parts.front().options()));
   auto flat = torch::cat(parts);
   m_group.sum(flat);
   int64_t at = 0;
@@ -64,7 +54,7 @@ double Optimiser::summedOverProcesses(double loss) {
     p.mutable_grad() = flat.narrow(0, at, p.numel()).view_as(p);
     at += p.numel();
   }
-  return flat[at].item<double>();
+  for (double& loss : losses) loss = flat[at++].item<double>();
 }
 
 double Optimiser::clip(GradientClip& out) const {
@@ -86,10 +76,13 @@ double Optimiser::clip(GradientClip& out) const {
 
 StepReport Optimiser::step(const TrainingBatch& batch, double rate, int64_t count) {
   StepReport out;
-  out.lossNats = summedOverProcesses(gradientsOf(batch));
+  std::vector<double> losses = gradientsOf(batch);
+  sumOverProcesses(losses);
+  out.loss = losses.front();
+  out.terms.assign(losses.begin() + 1, losses.end());
   GradientClip limits;
-  out.norm = std::isfinite(out.lossNats) ? clip(limits) : out.lossNats;
-  out.taken = std::isfinite(out.lossNats) && std::isfinite(out.norm);
+  out.norm = std::isfinite(out.loss) ? clip(limits) : out.loss;
+  out.taken = std::isfinite(out.loss) && std::isfinite(out.norm);
   if (out.taken) adam.step(rate, count, limits);
   return out;
 }

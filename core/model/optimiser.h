@@ -9,15 +9,11 @@
 
 namespace marey {
 
-/// Log-density in nats of the real frames of a batch, added up.
-torch::Tensor sumOfLogLikelihood(TrainableModel& net, const TrainingBatch& batch);
-/// How many frames that is.
-double scoredFrames(const TrainableModel& net, const TrainingBatch& batch);
-
 struct StepReport {
-  double lossNats = 0.0;  ///< mean over the real frames of the whole batch
-  double norm = 0.0;      ///< of the gradient before it is clipped
-  bool taken = false;     ///< false: loss or gradient were not finite, and nothing changed
+  double loss = 0.0;          ///< mean over the whole batch, in the objective's unit
+  double norm = 0.0;          ///< of the gradient before it is clipped
+  std::vector<double> terms;  ///< means of the loss's named parts
+  bool taken = false;         ///< false: loss or gradient were not finite, and nothing changed
 };
 
 class Optimiser {
@@ -30,9 +26,10 @@ class Optimiser {
   Adam adam;
 
  private:
-  /// Leaves the gradients of this process's share; returns its part of the loss.
-  double gradientsOf(const TrainingBatch& batch);
-  double summedOverProcesses(double loss);
+  /// Leaves the gradients of this process's share; its part of the mean loss, and of the named
+  /// parts after it.
+  std::vector<double> gradientsOf(const TrainingBatch& batch);
+  void sumOverProcesses(std::vector<double>& losses);
   /// Clips by value and then by norm, as the authors do; returns the norm before.
   double clip(GradientClip& out) const;
 

@@ -1,5 +1,6 @@
 #include "model/run_files.h"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -9,9 +10,11 @@
 namespace marey {
 namespace {
 
-constexpr const char* kHeader =
-    "step,seconds,learning_rate,train_bits_per_frame,valid_bits_per_frame,test_bits_per_frame,"
-    "gradient_norm,skipped\n";
+/// "bits per frame" as a part of a column's name.
+std::string columnOf(std::string unit) {
+  std::replace(unit.begin(), unit.end(), ' ', '_');
+  return unit;
+}
 
 std::filesystem::path logOf(const std::filesystem::path& run) {
   return run / "log.csv";
@@ -19,22 +22,29 @@ std::filesystem::path logOf(const std::filesystem::path& run) {
 
 }  // namespace
 
-void startLog(const std::filesystem::path& run) {
-  writeFileAtomically(logOf(run), kHeader);
+void startLog(const std::filesystem::path& run, const std::string& unit,
+              const std::vector<std::string>& terms) {
+  const std::string column = columnOf(unit);
+  std::string header = fmt::format(
+      "step,seconds,learning_rate,train_{0},valid_{0},test_{0},gradient_norm,skipped", column);
+  for (const std::string& term : terms) header += "," + columnOf(term);
+  writeFileAtomically(logOf(run), header + "\n");
 }
 
 void appendLog(const std::filesystem::path& run, const LogRow& r) {
   std::ofstream log(logOf(run), std::ios::app);
-  log << fmt::format("{},{:.1f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", r.step, r.seconds,
-                     r.learningRate, r.trainBits, r.validBits, r.testBits, r.gradientNorm,
-                     r.skipped);
+  log << fmt::format("{},{:.1f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}", r.step, r.seconds,
+                     r.learningRate, r.train, r.valid, r.test, r.gradientNorm, r.skipped);
+  for (const auto& [name, value] : r.terms) log << fmt::format(",{:.6g}", value);
+  log << "\n";
   if (!log.flush()) throw FileError(logOf(run).string() + ": cannot write");
 }
 
 void cutLog(const std::filesystem::path& run, int64_t step) {
   std::istringstream in(readFile(logOf(run)));
-  std::string line, kept = kHeader;
-  std::getline(in, line);
+  std::string line, kept;
+  std::getline(in, kept);
+  kept += "\n";
   while (std::getline(in, line))
     if (std::strtoll(line.c_str(), nullptr, 10) <= step) kept += line + "\n";
   writeFileAtomically(logOf(run), kept);

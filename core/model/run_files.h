@@ -1,9 +1,11 @@
 // The files of a training run that are not models: what it was asked for, and its log.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-
-#include "base/json.h"
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace marey {
 
@@ -11,12 +13,15 @@ namespace marey {
 struct LogRow {
   int64_t step = 0;
   double seconds = 0.0, learningRate = 0.0;
-  double trainBits = 0.0, validBits = 0.0, testBits = 0.0;  ///< per frame
+  double train = 0.0, valid = 0.0, test = 0.0;  ///< losses in the log's unit
   double gradientNorm = 0.0;
-  int64_t skipped = 0;  ///< steps since the last row
+  int64_t skipped = 0;                                     ///< steps since the last row
+  std::vector<std::pair<std::string, double>> terms = {};  ///< of the training loss
 };
 
-void startLog(const std::filesystem::path& run);
+/// The columns of losses are named after their unit: train_bits_per_frame, ...; `terms` after them.
+void startLog(const std::filesystem::path& run, const std::string& unit,
+              const std::vector<std::string>& terms);
 /// Throws FileError.
 void appendLog(const std::filesystem::path& run, const LogRow& row);
 /// Drops rows after `step`, which a killed run wrote after its last state.

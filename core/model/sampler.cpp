@@ -36,6 +36,9 @@ void check(const ModelInfo& info, const SampleRequest& r) {
   if (info.controlDim != 3)
     throwInput({.path = info.variant}, "a model that is controlled by a path (3 values per frame)",
                "{} control values", info.controlDim);
+  if (info.deterministic() && r.temperature != 1.0)
+    throwInput({.path = info.variant, .item = "temperature"},
+               "1: this model draws nothing that could be cooled", "{}", r.temperature);
   if (r.startPoses.rows() == 0) return;
   if (r.startPoses.rows() != info.context || r.startPoses.cols() != info.poseDim)
     throwInput({.path = "start poses"}, fmt::format("{} x {}", info.context, info.poseDim),
@@ -88,13 +91,83 @@ Matrix historyOf(const ModelInfo& info, const std::vector<Lane>& lanes, int rows
   return out;
 }
 
-void checkFinite(const Matrix& poses, const Lane& lane, int frame) {
+void checkFinite(const ModelInfo& info, const Matrix& poses, const Lane& lane, int frame) {
   for (long b = 0; b < poses.rows(); ++b)
     if (!poses.row(b).allFinite())
       throw NumericError(fmt::format(
           "sample {} left the range of numbers at frame {}: expected finite poses, found NaN or "
-          "infinity (try a lower temperature)",
-          lane.request->firstSample + b, frame));
+          "infinity{}",
+          lane.request->firstSample + b, frame,
+          info.deterministic() ? "" : " (try a lower temperature)"));
+}
+
+/// That of sample `b` of a request in generated frame `t`.
+void drawFor(const ModelInfo& info, const SampleRequest& r, int b, int t, float* out) {
+  const bool perClip = info.latent.per == LatentSpec::Per::Clip;
+  drawLatent(r.seed, r.firstSample + b, perClip ? 0 : t, r.temperature,
+             info.latent.degreesOfFreedom, {out, static_cast<size_t>(info.latent.width)});
+}
+
+/// All lanes advance together, frame by frame.
+void rollOut(const ModelInfo& info, const FrameGenerator& generator, const std::vector<Lane>& lanes,
+             const FrameSink& sink, Progress& progress) {
+  const int rows = lanes.back().firstRow + lanes.back().request->samples;
+  const int window = info.context + 1 + info.lookahead;
+  int frames = 0;
+  for (const Lane& lane : lanes) frames = std::max(frames, lane.frames());
+  RolloutState state = generator.start(rows, historyOf(info, lanes, rows));
+  Matrix latent(rows, info.latent.width), control(rows, info.controlWindowWidth());
+  for (int t = 0; t < frames; ++t) {
+    progress.throwIfCancelled();
+    for (const Lane& lane : lanes) {
+      const SampleRequest& r = *lane.request;
+      control.middleRows(lane.firstRow, r.samples) =
+          windowAt(lane.control, t, window).replicate(r.samples, 1);
+      for (int b = 0; b < r.samples; ++b)
+        drawFor(info, r, b, t, latent.row(lane.firstRow + b).data());
+    }
+    const Matrix poses = generator.sampleFrame(state, control, latent);
+    for (size_t i = 0; i < lanes.size(); ++i) {
+      const int frame = t - lanes[i].warmUp;
+      // A lane that has ended goes on unheard until the longest one ends.
+      if (t >= lanes[i].frames()) continue;
+      const Matrix own = poses.middleRows(lanes[i].firstRow, lanes[i].request->samples);
+      checkFinite(info, own, lanes[i], frame);
+      if (frame >= 0) sink(i, frame, own);
+    }
+    progress.report((t + 1.0) / frames, "sampling");
+  }
+}
+
+/// Every motion of a lane, whole.
+std::vector<ClipRequest> wholeClipsOf(const ModelInfo& info, const Lane& lane) {
+  const bool perClip = info.latent.per == LatentSpec::Per::Clip;
+  const long frames = lane.frames(), draws = perClip ? 1 : frames;
+  std::vector<ClipRequest> out;
+  for (int b = 0; b < lane.request->samples; ++b) {
+    ClipRequest clip{lane.request->startPoses, lane.control, Matrix(draws, info.latent.width)};
+    for (long t = 0; t < draws; ++t)
+      drawFor(info, *lane.request, b, static_cast<int>(t), clip.latents.row(t).data());
+    out.push_back(std::move(clip));
+  }
+  return out;
+}
+
+void makeWhole(const ModelInfo& info, const ClipGenerator& generator,
+               const std::vector<Lane>& lanes, const FrameSink& sink, Progress& progress) {
+  for (size_t i = 0; i < lanes.size(); ++i) {
+    const Lane& lane = lanes[i];
+    const auto requests = wholeClipsOf(info, lane);
+    const auto motions = generator.generate(requests, [&] { progress.throwIfCancelled(); });
+    Matrix poses(lane.request->samples, info.poseDim);
+    for (int t = 0; t < lane.frames(); ++t) {
+      for (size_t b = 0; b < motions.size(); ++b)
+        poses.row(static_cast<long>(b)) = motions[b].row(t);
+      checkFinite(info, poses, lane, t - lane.warmUp);
+      if (t >= lane.warmUp) sink(i, t - lane.warmUp, poses);
+    }
+    progress.report((static_cast<double>(i) + 1.0) / static_cast<double>(lanes.size()), "sampling");
+  }
 }
 
 }  // namespace
@@ -117,33 +190,13 @@ void sampleFrames(const MotionModel& model, std::span<const SampleRequest> reque
   const ModelInfo& info = model.info();
   const std::vector<Lane> lanes = lanesOf(info, requests);
   if (lanes.empty()) return;
-  const int rows = lanes.back().firstRow + lanes.back().request->samples;
-  const int window = info.context + 1 + info.lookahead;
-  int frames = 0;
-  for (const Lane& lane : lanes) frames = std::max(frames, lane.frames());
-  RolloutState state = model.start(rows, historyOf(info, lanes, rows));
-  Matrix latent(rows, info.poseDim), control(rows, window * info.controlDim);
-  for (int t = 0; t < frames; ++t) {
-    progress.throwIfCancelled();
-    for (const Lane& lane : lanes) {
-      const SampleRequest& r = *lane.request;
-      control.middleRows(lane.firstRow, r.samples) =
-          windowAt(lane.control, t, window).replicate(r.samples, 1);
-      for (int b = 0; b < r.samples; ++b)
-        drawLatent(r.seed, r.firstSample + b, t, r.temperature, model.baseDegreesOfFreedom(),
-                   {latent.row(lane.firstRow + b).data(), static_cast<size_t>(info.poseDim)});
-    }
-    const Matrix poses = model.sampleFrame(state, control, latent);
-    for (size_t i = 0; i < lanes.size(); ++i) {
-      const int frame = t - lanes[i].warmUp;
-      // A lane that has ended goes on unheard until the longest one ends.
-      if (t >= lanes[i].frames()) continue;
-      const Matrix own = poses.middleRows(lanes[i].firstRow, lanes[i].request->samples);
-      checkFinite(own, lanes[i], frame);
-      if (frame >= 0) sink(i, frame, own);
-    }
-    progress.report((t + 1.0) / frames, "sampling");
-  }
+  if (const auto* generator = model.rollout())
+    rollOut(info, *generator, lanes, sink, progress);
+  else if (const auto* whole = model.wholeClip())
+    makeWhole(info, *whole, lanes, sink, progress);
+  else
+    throw InputError({.path = info.variant}, "a model that makes motion along a path",
+                     "one of family " + info.family + ", which does not");
 }
 
 std::vector<std::vector<FeatureSequence>> sampleSequences(const MotionModel& model,

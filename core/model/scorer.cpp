@@ -71,10 +71,11 @@ struct Draw {
 
 /// Adds a piece's share to the mean over the draws. Frames are those of the clip.
 void add(const SequenceScore& piece, long first, double weight, ClipScore& out) {
-  for (long t = 0; t < piece.latent.rows(); ++t) {
+  for (long t = 0; t < static_cast<long>(piece.loglikNats.size()); ++t) {
     const auto at = static_cast<size_t>(first - out.firstFrame + t);
     out.loglikNats[at] += weight * piece.loglikNats[static_cast<size_t>(t)];
-    out.latentNorm[at] += weight * piece.latent.row(t).cast<double>().norm();
+    if (piece.latent.cols() > 0)
+      out.latentNorm[at] += weight * piece.latent.row(t).cast<double>().norm();
   }
 }
 
@@ -82,9 +83,10 @@ void add(const SequenceScore& piece, long first, double weight, ClipScore& out) 
 void scoreGroup(const MotionModel& model, const std::vector<Lane>& lanes, const Draw& draw,
                 Progress& progress, std::vector<ClipScore>& out) {
   const ModelInfo& info = model.info();
+  const DensityEstimator& density = *model.density();
   std::vector<RolloutState> states;
   for (const Lane& lane : lanes)
-    states.push_back(model.start(
+    states.push_back(density.start(
         1, Eigen::Map<const Eigen::RowVectorXf>(lane.features->pose.data(),
                                                 static_cast<long>(info.context) * info.poseDim)));
   const long longest = lanes.front().features->pose.rows();
@@ -103,8 +105,8 @@ void scoreGroup(const MotionModel& model, const std::vector<Lane>& lanes, const 
     std::vector<ObservedSequence> observed;
     for (size_t i = 0; i < poses.size(); ++i)
       observed.push_back({&poses[i], &controls[i], draw.noisy ? &targets[i] : nullptr});
-    const auto scores = model.observeMany(std::span(states).first(observed.size()), observed,
-                                          [&] { progress.throwIfCancelled(); });
+    const auto scores = density.observeMany(std::span(states).first(observed.size()), observed,
+                                            [&] { progress.throwIfCancelled(); });
     for (size_t i = 0; i < scores.size(); ++i)
       add(scores[i], first, draw.weight, out[lanes[i].index]);
     progress.report(static_cast<double>(first + kPiece) / static_cast<double>(longest + kPiece),
@@ -126,6 +128,7 @@ void scoreDraws(const MotionModel& model, const std::vector<Lane>& lanes, Progre
 /// What is known of a score before its frames are.
 ClipScore begun(const ModelInfo& info, const FeatureSequence& features) {
   ClipScore out{.name = features.name, .frames = features.frameCount(), .firstFrame = info.context};
+  if (info.density == DensityKind::None) return out;
   const auto scored = static_cast<size_t>(std::max(0, out.frames - info.context));
   out.loglikNats.assign(scored, 0.0);
   out.latentNorm.assign(scored, 0.0);
@@ -137,7 +140,7 @@ void finish(const ModelInfo& info, const FeatureSequence& features, bool standar
   const double logDet = toCentimetresPerFrame(info.standardiser);
   for (double& nats : out.loglikNats) nats += standardised ? 0.0 : logDet;
   out.bitsPerDimension = -out.meanNatsPerFrame() / (std::numbers::ln2 * info.poseDim);
-  if (!info.yardstick || out.tooShort()) return;
+  if (!info.yardstick || out.loglikNats.empty()) return;
   out.linearGaussianNats = logDensity(*info.yardstick, features, out.firstFrame);
   // Of poses in metres.
   const double shift = (standardised ? 0.0 : logDet) - info.standardiser.logDetPerFrame();
@@ -156,7 +159,7 @@ std::vector<ClipScore> scoreSequences(const MotionModel& model,
   std::vector<size_t> order;
   for (size_t i = 0; i < sequences.size(); ++i) {
     out.push_back(begun(info, sequences[i]));
-    if (!out.back().tooShort()) order.push_back(i);
+    if (!out.back().loglikNats.empty()) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
     return sequences[a].frameCount() > sequences[b].frameCount();

@@ -25,8 +25,9 @@ struct ClipScore {
   std::vector<int> oddestJoint;
   double bitsPerDimension = 0.0;    ///< mean, -log2 p / D
   double meanNatsPerFrame() const;  ///< NaN where nothing was scored
-  /// All of it is context: it has no frame to score.
-  bool tooShort() const { return loglikNats.empty(); }
+  /// All of it is context: it has no frame to score. Nothing is scored of long clips either where
+  /// the model has no likelihood (ModelInfo::density).
+  bool tooShort() const { return frames <= firstFrame; }
 };
 
 /// Unit of every likelihood that is shown, unless said otherwise.

@@ -53,11 +53,10 @@ class TrainedPath {
     TrainingBatch batch{torch::randn({m_spec.batch, window, m_poseDim}, generator),
                         torch::randn({m_spec.batch, window, m_controlDim}, generator),
                         torch::ones({m_spec.batch, window}),
-                        {},
                         {}};
     const auto begin = std::chrono::steady_clock::now();
-    batch.keep = m_net->drawDropout(batch, generator);
-    loss = m_optimiser->step(batch, m_config.learningRate, ++m_steps).lossNats;
+    batch.draws = m_net->draw(batch, generator);
+    loss = m_optimiser->step(batch, m_config.learningRate, ++m_steps).loss;
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
         .count();
   }

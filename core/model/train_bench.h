@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/job.h"
-#include "model/motion_model.h"
+#include "model/model_family.h"
 
 namespace marey {
 

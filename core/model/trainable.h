@@ -1,8 +1,13 @@
 // What a family gives the trainer. Internal to nn, model and the families (libtorch types).
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "base/json.h"
-#include "model/motion_model.h"
+#include "model/model_family.h"
+#include "model/objective.h"
 #include "nn/torch.h"
 
 namespace marey {
@@ -12,14 +17,18 @@ struct TrainingBatch {
   torch::Tensor pose;        ///< [B, W, D]
   torch::Tensor control;     ///< [B, W, C]
   torch::Tensor mask;        ///< [B, W], 1 where a frame is real
-  torch::Tensor keep;        ///< [B, ...], 0 where training hides something; undefined: nowhere
+  torch::Tensor draws = {};  ///< [B, ...], what TrainableModel::draw gave; undefined: none
   torch::Tensor noise = {};  ///< [B, W, D], on the poses that are to be foreseen; undefined: none
+  int64_t step = 0;          ///< steps of training before this one, for what warms up
 
   /// Some of the windows.
   TrainingBatch narrow(int64_t first, int64_t count) const {
-    return {pose.narrow(0, first, count), control.narrow(0, first, count),
-            mask.narrow(0, first, count), keep.defined() ? keep.narrow(0, first, count) : keep,
-            noise.defined() ? noise.narrow(0, first, count) : noise};
+    return {pose.narrow(0, first, count),
+            control.narrow(0, first, count),
+            mask.narrow(0, first, count),
+            draws.defined() ? draws.narrow(0, first, count) : draws,
+            noise.defined() ? noise.narrow(0, first, count) : noise,
+            step};
   }
 };
 
@@ -33,16 +42,35 @@ struct TrainingFrames {
                              ///< none
 };
 
+/// Of a batch.
+struct Loss {
+  torch::Tensor sum;  ///< over what TrainableModel::weight counts; differentiable
+  /// Named parts of the sum, for the log; empty where it has none.
+  std::vector<std::pair<std::string, torch::Tensor>> terms = {};
+};
+
 class TrainableModel : public torch::nn::Module {
  public:
+  virtual Objective objective() const = 0;
   virtual int64_t context() const = 0;
   virtual int64_t lookahead() const = 0;
-  /// What training hides from the nets, for a batch of such windows; undefined where nothing.
-  virtual torch::Tensor drawDropout(const TrainingBatch& batch, at::Generator& generator) const = 0;
-  /// Log-density in nats [B, W - context - lookahead] of frames context .. W - lookahead - 1.
-  virtual torch::Tensor logLikelihood(const TrainingBatch& batch) = 0;
+  /// Random numbers that the loss of such a batch needs (what dropout hides, latents); undefined
+  /// where none. Evaluations give none.
+  virtual torch::Tensor draw(const TrainingBatch& /*batch*/, at::Generator& /*generator*/) const {
+    return {};
+  }
+  /// Of frames context .. W - lookahead - 1 of every window, those that are padding left out.
+  virtual Loss loss(const TrainingBatch& batch) = 0;
+  /// What the loss is a sum over: as a rule the real ones of those frames.
+  virtual double weight(const TrainingBatch& batch) const {
+    return scoredMask(batch).sum().item<double>();
+  }
+  /// [B, W - context - lookahead], 1 where such a frame is real.
+  torch::Tensor scoredMask(const TrainingBatch& batch) const {
+    return batch.mask.narrow(1, context(), batch.mask.size(1) - context() - lookahead());
+  }
   /// Data-dependent start. Returns facts for the log and the model card.
-  virtual Json initialise(const TrainingFrames& frames) = 0;
+  virtual Json initialise(const TrainingFrames& /*frames*/) { return Json::object(); }
   /// Standard deviation of the observation noise that the model is trained and scored with,
   /// metres; 0: none.
   virtual double observationFloorM() const { return 0.0; }
@@ -50,7 +78,7 @@ class TrainableModel : public torch::nn::Module {
   /// of the base distribution. Asked of models with an observation floor only.
   virtual torch::Tensor poseDerivatives(const TrainingFrames& frames, int64_t count);
 
-  /// Whether logLikelihood takes the fast path, where there is one for its device and type.
+  /// Whether the loss takes the fast path, where there is one for its device and type.
   Execution execution = Execution::Engine;
 };
 

@@ -1,14 +1,16 @@
-// Maximum-likelihood training with checkpoints from which a broken run goes on exactly.
+// Training by gradient, with checkpoints from which a broken run goes on exactly.
 #pragma once
 
 #include <filesystem>
-#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
 #include "base/job.h"
 #include "base/process_rank.h"
 #include "model/data_set.h"
+#include "model/model_family.h"
+#include "model/objective.h"
 #include "model/training_config.h"
 
 namespace marey {
@@ -31,10 +33,13 @@ struct TrainRequest {
 };
 
 struct TrainResult {
-  int64_t steps = 0;
-  double trainBitsPerFrame = 0.0;  ///< standardised poses, mean since the last checkpoint
-  double validBitsPerFrame = 0.0;  ///< of the best checkpoint
-  double testNatsPerFrame = 0.0;   ///< held-out clips, poses in centimetres, at the end
+  int64_t steps = 0;  ///< 0 where a family builds its models without any
+  Objective objective;
+  /// Losses in shownUnit(objective); NaN where there is none.
+  double train = std::numeric_limits<double>::quiet_NaN();  ///< mean since the last checkpoint
+  double valid = std::numeric_limits<double>::quiet_NaN();  ///< of the best checkpoint
+  /// Held-out clips at the end, poses in centimetres; NaN unless the objective is a likelihood.
+  double testNatsPerFrame = std::numeric_limits<double>::quiet_NaN();
   std::filesystem::path best, last;
 };
 
@@ -44,7 +49,7 @@ struct TrainResult {
 /// and configuration, and then gives the same batches and numbers as an unbroken run.
 /// Throws InputError (also for data that are not finite), FileError, CancelledError (after writing
 /// a checkpoint) and NumericError naming the layer after five non-finite steps in a row.
-TrainResult train(const DataSet& data, const TrainRequest& request,
-                  std::span<const ModelFamily> families, Progress& progress);
+TrainResult trainByGradient(const DataSet& data, const TrainRequest& request,
+                            const ModelFamily& family, Progress& progress);
 
 }  // namespace marey

@@ -61,6 +61,16 @@ TrainingState loadState(const std::filesystem::path& path, torch::nn::Module& ne
   return out;
 }
 
+void addToAverage(const torch::nn::Module& net, double decay, TrainingState& state) {
+  const torch::NoGradGuard guard;
+  // A short memory at first, so that the random start is forgotten.
+  const auto updates = static_cast<double>(state.updates);
+  const double kept = std::min(decay, (1.0 + updates) / (10.0 + updates));
+  if (!state.average.empty())
+    for (const auto& item : net.named_parameters())
+      state.average[item.key()].lerp_(item.value(), 1.0 - kept);
+}
+
 AveragedWeights::AveragedWeights(torch::nn::Module& net, const TrainingState& state) : m_net(net) {
   const torch::NoGradGuard guard;
   if (state.average.empty()) return;

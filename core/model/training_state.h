@@ -29,6 +29,9 @@ void saveState(const std::filesystem::path& path, const TrainingState& state,
 TrainingState loadState(const std::filesystem::path& path, torch::nn::Module& net, Adam& adam,
                         const Json& identity);
 
+/// Moves the average towards the weights; where there is none, nothing.
+void addToAverage(const torch::nn::Module& net, double decay, TrainingState& state);
+
 /// Puts the averaged weights into the net for its lifetime.
 class AveragedWeights {
  public:

@@ -73,7 +73,7 @@ std::vector<std::vector<double>> longestRuns(const std::vector<ClipScore>& score
   if (order.size() > kLikelihoodRuns) order.resize(kLikelihoodRuns);
   std::vector<std::vector<double>> out;
   for (const auto* score : order) {
-    if (score->tooShort()) continue;
+    if (score->loglikNats.empty()) continue;
     out.push_back(score->loglikNats);
   }
   return out;
@@ -92,6 +92,7 @@ std::string likelihoodNote(const SystemResult& s) {
 void addLikelihoods(const ExperimentResult& r, ReportData& out) {
   for (size_t i = 0; i < r.systems.size(); ++i) {
     const SystemResult& s = r.systems[i];
+    if (s.info.density == DensityKind::None) continue;
     LikelihoodPanel panel{.title = "Log-likelihood under " + labelOf(s), .fps = r.experiment.fps};
     panel.groups.push_back({0, longestRuns(s.naturalScores)});
     std::vector<ClipScore> sampled;

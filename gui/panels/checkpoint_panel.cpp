@@ -115,7 +115,6 @@ class CheckpointPanel : public QWidget {
     m_table->setHorizontalHeaderLabels({tr("Checkpoint"), tr("Minutes"), tr("Train"), tr("Valid")});
     m_table->verticalHeader()->hide();
     m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-    m_table->setToolTip(tr("Losses in bits per frame"));
     m_table->setEditTriggers(QAbstractItemView::NoEditTriggers);
     m_table->setSelectionBehavior(QAbstractItemView::SelectRows);
     m_table->setSelectionMode(QAbstractItemView::SingleSelection);

@@ -169,7 +169,7 @@ render::ChartGrid LossChart::chart() const {
   render::Chart chart{.title = tr("Loss over training steps").toStdString(),
                       .x = {.label = tr("training steps").toStdString()},
                       .y = {.label = tr("loss").toStdString(),
-                            .unit = "bits/frame",
+                            .unit = m_run.unit,
                             .range = std::pair(axis.low, axis.high)}};
   const std::tuple<QString, double LossRow::*, render::Colour> curves[] = {
       {tr("training"), &LossRow::train, render::grey(0.55)},

@@ -312,8 +312,10 @@ QVariant MotionTree::motionData(const MotionGroup& group, size_t index, int colu
       return QString::number(motion.clip->seconds(), 'f', 2);
     case Score:
       if (!motion.score) return {};
-      return motion.score->tooShort() ? tr("too short")
-                                      : QString::number(motion.score->meanNatsPerFrame(), 'f', 1);
+      if (motion.score->tooShort()) return tr("too short");
+      return motion.score->loglikNats.empty()
+                 ? tr("none")
+                 : QString::number(motion.score->meanNatsPerFrame(), 'f', 1);
     default:
       return {};
   }

@@ -14,13 +14,23 @@ namespace marey::gui {
 namespace {
 namespace fs = std::filesystem;
 
-std::vector<LossRow> readLog(const fs::path& file) {
+/// "train_bits_per_frame", the fourth column's name -> "bits per frame".
+std::string unitOf(const std::string& header) {
+  size_t at = 0;
+  for (int column = 0; column < 3; ++column) at = header.find(',', at) + 1;
+  std::string out = header.substr(at, header.find(',', at) - at);
+  out.erase(0, out.find('_') + 1);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+TrainingRun readLog(const fs::path& file) {
   std::istringstream in(readFile(file));
   std::string line;
   std::getline(in, line);
   if (!line.starts_with("step,seconds,"))
     throw InputError({.path = file.string(), .line = 1}, "the log of a training run", line);
-  std::vector<LossRow> out;
+  TrainingRun out{.unit = unitOf(line), .rows = {}, .checkpoints = {}};
   for (int64_t number = 2; std::getline(in, line); ++number) {
     LossRow row;
     long long step = 0;
@@ -29,7 +39,7 @@ std::vector<LossRow> readLog(const fs::path& file) {
                     &row.train, &row.valid, &row.test) != 6)
       throw InputError({.path = file.string(), .line = number}, "six numbers or more", line);
     row.step = step;
-    out.push_back(row);
+    out.rows.push_back(row);
   }
   return out;
 }
@@ -52,7 +62,7 @@ double judged(const LossRow& row) {
 }  // namespace
 
 TrainingRun readTrainingRun(const fs::path& folder) {
-  TrainingRun out{.rows = readLog(folder / "log.csv"), .checkpoints = {}};
+  TrainingRun out = readLog(folder / "log.csv");
   std::error_code none;
   for (const char* kept : {"checkpoints", "snapshots"})
     for (const auto& entry : fs::directory_iterator(folder / kept, none))

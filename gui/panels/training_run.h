@@ -8,7 +8,7 @@
 
 namespace marey::gui {
 
-/// A row of log.csv; bits per frame of standardised poses, NaN where there was nothing to measure.
+/// A row of log.csv; losses in the run's unit, NaN where there was nothing to measure.
 struct LossRow {
   int64_t step = 0;
   double seconds = 0.0;
@@ -22,6 +22,7 @@ struct Checkpoint {
 };
 
 struct TrainingRun {
+  std::string unit;  ///< of losses: "bits per frame"
   std::vector<LossRow> rows;
   std::vector<Checkpoint> checkpoints;  ///< snapshots by their step, then best and last
 };

@@ -231,6 +231,7 @@ std::vector<LikelihoodRow> likelihoodRows(const std::vector<MotionGroup>& groups
     for (Scored& scored : scoredSets(groups, set, systems, naturalScores))
       if ((scored.info = facts(scored.row.system))) sets.push_back(std::move(scored));
   int first = 0;
+  std::erase_if(sets, [](const Scored& s) { return s.info->density == DensityKind::None; });
   for (const Scored& set : sets) first = std::max(first, set.info->context);
   std::vector<LikelihoodRow> out;
   for (Scored& set : sets) {

@@ -14,8 +14,8 @@
 namespace marey::gui {
 
 /// Jobs of one lane run one after the other, lanes side by side: models keep all cores busy, files
-/// can be read meanwhile, what is written (which may take long and is not the window's to show) holds
-/// neither up, and what somebody waits for to look at does not wait for a thousand others.
+/// can be read meanwhile, what is written (which may take long and is not the window's to show)
+/// holds neither up, and what somebody waits for to look at does not wait for a thousand others.
 enum class Lane { Files, Models, Exports, Previews };
 
 struct JobStatus {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/motion_model.h"
+#include "model/model_family.h"
 
 namespace marey::gui {
 

@@ -98,12 +98,6 @@ Matrix EngineModel::sampleFrame(RolloutState& state, const Matrix& controlWindow
   return out;
 }
 
-SequenceScore EngineModel::observe(RolloutState& state, const Matrix& poses,
-                                   const Matrix& controls) const {
-  const ObservedSequence one{&poses, &controls};
-  return std::move(observeMany({&state, 1}, {&one, 1}, [] {}).front());
-}
-
 TensorFile EngineModel::save() const {
   if (m_flow.precision() != nn::Precision::Float32)
     throw InputError({.path = m_info.variant}, "weights loaded in full precision", "rounded ones");

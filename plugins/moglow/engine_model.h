@@ -10,7 +10,7 @@
 
 namespace marey::moglow {
 
-class EngineModel : public MotionModel {
+class EngineModel : public MotionModel, public FrameGenerator, public DensityEstimator {
  public:
   /// `file` holds the checked weights; the flow's large ones are kept packed only. `base`: null
   /// without one; `motion`: that of samples, null where it is `base`. Throws InputError for a
@@ -21,15 +21,14 @@ class EngineModel : public MotionModel {
   ~EngineModel() override;
 
   const ModelInfo& info() const override { return m_info; }
+  const FrameGenerator* rollout() const override { return this; }
+  const DensityEstimator* density() const override { return this; }
   RolloutState start(int batch, const Matrix& history) const override;
   Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,
                      const Matrix& latent) const override;
-  SequenceScore observe(RolloutState& state, const Matrix& poses,
-                        const Matrix& controls) const override;
   std::vector<SequenceScore> observeMany(std::span<RolloutState> states,
                                          std::span<const ObservedSequence> sequences,
                                          const std::function<void()>& between) const override;
-  double baseDegreesOfFreedom() const override { return m_config.degreesOfFreedom(); }
   /// Throws InputError when the weights were rounded on loading.
   TensorFile save() const override;
 

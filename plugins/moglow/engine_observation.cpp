@@ -162,7 +162,7 @@ void EngineModel::Observation::seeBase(long rows) {
 void EngineModel::Observation::keep(const nn::FrameRows& frames, long begin) {
   const bool based = m_model.m_base != nullptr;
   const long d = m_model.m_config.poseDim, passed = m_model.m_config.passedChannels();
-  const BaseDensity density(m_model.baseDegreesOfFreedom(), d);
+  const BaseDensity density(m_model.m_config.degreesOfFreedom(), d);
   for (long t = 0; t < frames.frames(); ++t)
     for (long row = frames.first[static_cast<size_t>(t)];
          row < frames.first[static_cast<size_t>(t) + 1]; ++row) {

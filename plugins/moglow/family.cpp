@@ -10,6 +10,8 @@
 namespace marey::moglow {
 namespace {
 
+constexpr const char* kFamily = "moglow";
+
 /// Of models that are trained from now on: as finely as anything about a skeleton is known.
 constexpr double kObservationFloorMm = 0.5;
 
@@ -30,26 +32,25 @@ int64_t trainableParameters(const Config& c) {
   return c.steps * (2 * d + linear + net);
 }
 
-ModelInfo describe(const Json& json, const std::string& origin) {
-  const Config config = configFromJson(json, origin);
-  ModelInfo out;
-  out.family = "moglow";
-  if (json.contains("name") && json["name"].is_string()) out.variant = json["name"];
-  out.poseDim = config.poseDim;
-  out.controlDim = config.controlDim;
-  out.context = config.tau;
-  out.lookahead = config.lookahead;
-  out.parameters = trainableParameters(config);
-  out.config = toJson(config);
-  return out;
-}
-
 /// Completes what the configuration says about a model.
 ModelInfo completed(ModelInfo info, const Config& config) {
   info.context = config.tau;
   info.lookahead = config.lookahead;
   info.parameters = trainableParameters(config);
+  info.latent = {.width = config.poseDim, .degreesOfFreedom = config.degreesOfFreedom()};
+  info.density = DensityKind::Exact;
   return info;
+}
+
+ModelInfo describe(const Json& json, const std::string& origin) {
+  const Config config = configFromJson(json, origin);
+  ModelInfo out;
+  out.family = kFamily;
+  if (json.contains("name") && json["name"].is_string()) out.variant = json["name"];
+  out.poseDim = config.poseDim;
+  out.controlDim = config.controlDim;
+  out.config = toJson(config);
+  return completed(std::move(out), config);
 }
 
 std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
@@ -82,6 +83,11 @@ bool statesFloor(const Json& json) {
   return model.is_object() && model.contains("observation_floor_mm");
 }
 
+/// The authors' hparams, and the flat keys of vectors computed by their code.
+bool recognises(const Json& config) {
+  return config.is_object() && (config.contains("Glow") || config.contains("lstm_layers"));
+}
+
 Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const TraineeData& data,
                     uint64_t seed) {
   Config config = configFromJson(modelConfig, origin);
@@ -96,7 +102,15 @@ Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const Tr
 }  // namespace
 
 ModelFamily family() {
-  return {.name = "moglow", .load = load, .describe = describe, .makeTrainee = makeTrainee};
+  return {.name = kFamily,
+          .load = load,
+          .describe = describe,
+          .recognises = recognises,
+          .makeTrainee = makeTrainee,
+#ifdef MAREY_IMPORTS
+          .importCheckpoint = importCheckpoint
+#endif
+  };
 }
 
 }  // namespace marey::moglow

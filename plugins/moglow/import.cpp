@@ -78,17 +78,14 @@ bool hasDimensions(const Json& json) {
 
 }  // namespace
 
-std::unique_ptr<MotionModel> importCheckpoint(const std::string& checkpoint, const Json& json,
-                                              const std::string& configOrigin,
-                                              const Standardiser& standardiser,
-                                              const std::string& variant,
-                                              const std::string& wantedStateDict) {
-  Config config = configFromJson(json, configOrigin);
-  TorchCheckpoint file = readTorchCheckpoint(checkpoint, stateDictFilter(authorsNameStart));
-  const std::string origin = checkpoint + (file.isSafetensors ? " (a safetensors file)" : "");
+std::unique_ptr<MotionModel> importCheckpoint(const ImportRequest& request) {
+  Config config = configFromJson(request.config, request.configOrigin);
+  TorchCheckpoint file = readTorchCheckpoint(request.checkpoint, stateDictFilter(authorsNameStart));
+  const std::string origin =
+      request.checkpoint + (file.isSafetensors ? " (a safetensors file)" : "");
   const StateDict state =
-      chooseStateDict(std::move(file), authorsNameStart, kFirstTensor, wantedStateDict, origin);
-  if (!hasDimensions(json)) inferDimensions(state.tensors, config, origin);
+      chooseStateDict(std::move(file), authorsNameStart, kFirstTensor, request.stateDict, origin);
+  if (!hasDimensions(request.config)) inferDimensions(state.tensors, config, origin);
   TensorFile weights;
   for (const auto& [name, tensor] : state.tensors) {
     const std::string key = ourName(name);
@@ -104,19 +101,22 @@ std::unique_ptr<MotionModel> importCheckpoint(const std::string& checkpoint, con
   loadWeights(*net, weights, origin);
   ModelInfo info;
   info.family = "moglow";
-  info.variant = variant;
+  info.variant = request.variant;
   info.poseDim = config.poseDim;
   info.controlDim = config.controlDim;
   info.context = config.tau;
   info.lookahead = config.lookahead;
+  info.latent = {.width = config.poseDim, .degreesOfFreedom = config.degreesOfFreedom()};
+  info.density = DensityKind::Exact;
   info.config = toJson(config);
   info.parameters = 0;
   for (const auto& p : net->parameters()) info.parameters += p.numel();
-  info.standardiser = standardiser;
-  info.provenance = {{"imported_from", checkpoint.substr(checkpoint.rfind('/') + 1)},
-                     {"state_dict", state.name},
-                     {"left_out", state.leftOut},
-                     {"standardiser", standardiser.empty() ? "none" : "refitted"}};
+  info.standardiser = request.standardiser;
+  info.provenance = {
+      {"imported_from", request.checkpoint.substr(request.checkpoint.rfind('/') + 1)},
+      {"state_dict", state.name},
+      {"left_out", state.leftOut},
+      {"standardiser", request.standardiser.empty() ? "none" : "refitted"}};
   return std::make_unique<ReferenceModel>(std::move(info), std::move(net));
 }
 

@@ -124,7 +124,15 @@ torch::Tensor Net::toDataBy(const PoseBase* base, const torch::Tensor& z, const 
   return base->toPose(e.flatten(0, 1), foresight).view({batch, frames, -1});
 }
 
-torch::Tensor Net::drawDropout(const TrainingBatch& batch, at::Generator& generator) const {
+Objective Net::objective() const {
+  return {.name = "negative log-likelihood", .unit = "nats per frame", .likelihood = true};
+}
+
+Loss Net::loss(const TrainingBatch& batch) {
+  return {-(logLikelihood(batch) * scoredMask(batch)).sum()};
+}
+
+torch::Tensor Net::draw(const TrainingBatch& batch, at::Generator& generator) const {
   if (m_config.dropout <= 0.0) return {};
   const int64_t frames = batch.pose.size(1) - m_config.tau - m_config.lookahead;
   // Drawn on the CPU, so that a device changes no batch.
@@ -136,7 +144,7 @@ torch::Tensor Net::logLikelihood(const TrainingBatch& batch) {
   const int64_t frames = batch.pose.size(1) - m_config.tau - m_config.lookahead;
   const auto poses = batch.pose.narrow(1, 0, m_config.tau + frames);
   Context context = contextOf(poses, batch.control);
-  context.keep = batch.keep;
+  context.keep = batch.draws;
   const auto pass = [&](const torch::Tensor& x, const nn::FlowConditioning& seen) {
     if (execution == Execution::Engine && nn::takesFastPath(*m_flow, x, seen))
       return nn::fastToLatent(*m_flow, x, seen);

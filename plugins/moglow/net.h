@@ -21,11 +21,15 @@ class Net : public TrainableModel {
   // TrainableModel
   int64_t context() const override { return m_config.tau; }
   int64_t lookahead() const override { return m_config.lookahead; }
-  torch::Tensor drawDropout(const TrainingBatch& batch, at::Generator& generator) const override;
-  torch::Tensor logLikelihood(const TrainingBatch& batch) override;
+  Objective objective() const override;
+  torch::Tensor draw(const TrainingBatch& batch, at::Generator& generator) const override;
+  Loss loss(const TrainingBatch& batch) override;
   Json initialise(const TrainingFrames& frames) override;
   double observationFloorM() const override { return 1e-3 * m_config.observationFloorMm; }
   torch::Tensor poseDerivatives(const TrainingFrames& frames, int64_t count) override;
+
+  /// Log-density in nats [B, W - tau - lookahead] of frames tau .. W - lookahead - 1.
+  torch::Tensor logLikelihood(const TrainingBatch& batch);
 
   /// Conditioning of a run of frames.
   struct Context {

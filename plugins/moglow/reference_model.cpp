@@ -79,11 +79,6 @@ std::vector<SequenceScore> ReferenceModel::observeMany(std::span<RolloutState> s
   return out;
 }
 
-SequenceScore ReferenceModel::observe(RolloutState& state, const Matrix& poses,
-                                      const Matrix& controls) const {
-  return observeTargets(state, poses, controls, poses);
-}
-
 SequenceScore ReferenceModel::observeTargets(RolloutState& state, const Matrix& poses,
                                              const Matrix& controls, const Matrix& targets) const {
   const c10::InferenceMode guard;
@@ -94,9 +89,10 @@ SequenceScore ReferenceModel::observeTargets(RolloutState& state, const Matrix& 
   const auto scored = (toTensor(targets).unsqueeze(0) - m_poseMean) / m_poseStd;
   const auto latent = m_net->toLatent(scored, m_net->contextOf(all, control), rollout.flow);
   rollout.history = all.narrow(1, all.size(1) - m_info.context, m_info.context);
-  const auto density = (nn::baseLogDensity(latent.value, baseDegreesOfFreedom()) + latent.logDet)
-                           .to(torch::kFloat64)
-                           .contiguous();
+  const auto density =
+      (nn::baseLogDensity(latent.value, m_net->config().degreesOfFreedom()) + latent.logDet)
+          .to(torch::kFloat64)
+          .contiguous();
   SequenceScore out;
   out.latent = toMatrix(latent.value.squeeze(0));
   out.loglikNats.assign(density.data_ptr<double>(), density.data_ptr<double>() + density.numel());

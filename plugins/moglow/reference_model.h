@@ -9,20 +9,19 @@
 
 namespace marey::moglow {
 
-class ReferenceModel : public MotionModel {
+class ReferenceModel : public MotionModel, public FrameGenerator, public DensityEstimator {
  public:
   ReferenceModel(ModelInfo info, std::shared_ptr<Net> net,
                  torch::ScalarType type = torch::kFloat32);
   const ModelInfo& info() const override { return m_info; }
+  const FrameGenerator* rollout() const override { return this; }
+  const DensityEstimator* density() const override { return this; }
   RolloutState start(int batch, const Matrix& history) const override;
   Matrix sampleFrame(RolloutState& state, const Matrix& controlWindow,
                      const Matrix& latent) const override;
   std::vector<SequenceScore> observeMany(std::span<RolloutState> states,
                                          std::span<const ObservedSequence> sequences,
                                          const std::function<void()>& between) const override;
-  SequenceScore observe(RolloutState& state, const Matrix& poses,
-                        const Matrix& controls) const override;
-  double baseDegreesOfFreedom() const override { return m_net->config().degreesOfFreedom(); }
   TensorFile save() const override;
 
  private:

@@ -61,7 +61,7 @@ struct Bases {
                window = tau + 1 + config.lookahead;
     const auto units = [](const std::vector<float>& v) { return torch::tensor(v); };
     const auto& s = info.standardiser;
-    RolloutState state = model->start(kMotions, {});
+    RolloutState state = model->rollout()->start(kMotions, {});
     std::vector<torch::Tensor> frames, controls;
     for (uint32_t t = 0; t < kRows / kMotions + tau; ++t) {
       Matrix control(kMotions, window * c), latent(kMotions, d);
@@ -72,7 +72,7 @@ struct Bases {
       auto standard = torch::from_blob(control.data(), {kMotions, window, c}).clone() * 0.5;
       auto metres = standard * units(s.controlStd) + units(s.controlMean);
       std::copy_n(metres.contiguous().data_ptr<float>(), control.size(), control.data());
-      Matrix pose = model->sampleFrame(state, control, latent);
+      Matrix pose = model->rollout()->sampleFrame(state, control, latent);
       frames.push_back((torch::from_blob(pose.data(), {kMotions, d}).clone() - units(s.poseMean)) /
                        units(s.poseStd));
       controls.push_back(standard.flatten(1));

@@ -66,7 +66,7 @@ std::vector<Matrix> rollout(const MotionModel& model, const std::vector<uint32_t
                             int frames = kFrames) {
   const ModelInfo& info = model.info();
   const auto rows = static_cast<long>(samples.size());
-  RolloutState state = model.start(static_cast<int>(rows), {});
+  RolloutState state = model.rollout()->start(static_cast<int>(rows), {});
   std::vector<Matrix> out;
   for (uint32_t t = 0; t < static_cast<uint32_t>(frames); ++t) {
     Matrix control(rows, (info.context + 1L + info.lookahead) * info.controlDim),
@@ -77,7 +77,7 @@ std::vector<Matrix> rollout(const MotionModel& model, const std::vector<uint32_t
       fillNormal({.seed = 4, .sample = sample, .frame = t, .stage = RandomStage::Test},
                  {latent.row(b).data(), static_cast<size_t>(latent.cols())});
     }
-    out.push_back(model.sampleFrame(state, control, latent));
+    out.push_back(model.rollout()->sampleFrame(state, control, latent));
   }
   return out;
 }
@@ -182,8 +182,8 @@ TEST_P(Bases, MakesEveryOfFiftyFramesFromThePlainPathsPast) {
   fillNormal({.seed = 6, .stage = RandomStage::Test},
              {latent.data(), static_cast<size_t>(latent.size())});
   const auto next = [&](const MotionModel& model) {
-    RolloutState state = model.start(kRows, history);
-    return model.sampleFrame(state, control, latent);
+    RolloutState state = model.rollout()->start(kRows, history);
+    return model.rollout()->sampleFrame(state, control, latent);
   };
   const Matrix got = next(*fast), wanted = next(truth.exact());
   ASSERT_TRUE(wanted.allFinite());

@@ -78,11 +78,11 @@ std::vector<Matrix> rollout(const MotionModel& model, const std::vector<uint32_t
     return out;
   };
   RolloutState state =
-      model.start(static_cast<int>(rows), rowsOf(0, 1000, info.context * info.poseDim));
+      model.rollout()->start(static_cast<int>(rows), rowsOf(0, 1000, info.context * info.poseDim));
   std::vector<Matrix> out;
   for (int t = 0; t < frames; ++t)
-    out.push_back(
-        model.sampleFrame(state, rowsOf(1, t, windowWidth(info)), rowsOf(2, t, info.poseDim)));
+    out.push_back(model.rollout()->sampleFrame(state, rowsOf(1, t, windowWidth(info)),
+                                               rowsOf(2, t, info.poseDim)));
   return out;
 }
 
@@ -253,11 +253,12 @@ TEST_P(Cells, AScoreIsTheSameBitsInAnyCompanyAndInPieces) {
   const SequenceScore among = scoresOf(*model, company)[9];
   EXPECT_EQ(among.latent, alone.latent);
   EXPECT_EQ(among.loglikNats, alone.loglikNats);
-  RolloutState state = model->start(1, {});
+  RolloutState state = model->rollout()->start(1, {});
   const long context = model->info().context, ahead = model->info().lookahead;
   for (const auto& [begin, count] : {std::pair{0L, 1L}, {1L, 17L}, {18L, 22L}}) {
-    const auto piece = model->observe(state, one.poses.middleRows(begin, count),
-                                      one.controls.middleRows(begin, context + count + ahead));
+    const auto piece =
+        model->density()->observe(state, one.poses.middleRows(begin, count),
+                                  one.controls.middleRows(begin, context + count + ahead));
     EXPECT_EQ(piece.latent, Matrix(alone.latent.middleRows(begin, count)));
   }
 }
@@ -267,34 +268,34 @@ TEST_P(Cells, WhatWasSampledHasTheLatentsThatMadeIt) {
   const ModelInfo& info = model->info();
   const Matrix controls = noise(1, 1, 20 + info.context + info.lookahead, info.controlDim);
   Matrix poses(20, info.poseDim), latents(20, info.poseDim);
-  RolloutState state = model->start(1, {}), scored = model->start(1, {});
+  RolloutState state = model->rollout()->start(1, {}), scored = model->rollout()->start(1, {});
   for (long t = 0; t < 20; ++t) {
     const Matrix window =
         Eigen::Map<const Eigen::RowVectorXf>(controls.row(t).data(), windowWidth(info));
     latents.row(t) = noise(2, static_cast<uint32_t>(t), 1, info.poseDim);
-    poses.row(t) = model->sampleFrame(state, window, latents.row(t));
+    poses.row(t) = model->rollout()->sampleFrame(state, window, latents.row(t));
   }
-  const auto score = model->observe(scored, poses, controls);
+  const auto score = model->density()->observe(scored, poses, controls);
   expectNear(score.latent, latents, 1e-4, GetParam());
   // Both stand at the same place now.
   const Matrix window = noise(4, 4, 1, windowWidth(info)), z = noise(5, 5, 1, info.poseDim);
-  expectNear(model->sampleFrame(scored, window, z), model->sampleFrame(state, window, z), 1e-4,
-             GetParam());
+  expectNear(model->rollout()->sampleFrame(scored, window, z),
+             model->rollout()->sampleFrame(state, window, z), 1e-4, GetParam());
 }
 
 TEST_P(Cells, ACopiedStateGoesItsOwnWay) {
   const auto model = modelOf(wideFile(GetParam()));
   const ModelInfo& info = model->info();
   const auto frame = [&](RolloutState& state, uint32_t which) {
-    return model->sampleFrame(state, noise(which, 0, 2, windowWidth(info)),
-                              noise(which, 1, 2, info.poseDim));
+    return model->rollout()->sampleFrame(state, noise(which, 0, 2, windowWidth(info)),
+                                         noise(which, 1, 2, info.poseDim));
   };
-  RolloutState state = model->start(2, {});
+  RolloutState state = model->rollout()->start(2, {});
   frame(state, 1);
   RolloutState fork = state;
   frame(fork, 9);
   const Matrix after = frame(state, 2);
-  RolloutState fresh = model->start(2, {});
+  RolloutState fresh = model->rollout()->start(2, {});
   frame(fresh, 1);
   EXPECT_EQ(frame(fresh, 2), after);
   EXPECT_NE(frame(fork, 3), frame(state, 3));
@@ -370,33 +371,33 @@ TEST(EngineModel, RoundedWeightsComeCloseAndAreNotSaved) {
 TEST(EngineModel, RefusesShapesThatDoNotFit) {
   const auto model = modelOf(wideFile("lstm"));
   const ModelInfo& info = model->info();
-  RolloutState state = model->start(2, {});
-  EXPECT_THROW(model->start(2, Matrix::Zero(2, 5)), InputError);
-  EXPECT_THROW(model->sampleFrame(state, Matrix::Zero(2, windowWidth(info) + 1),
-                                  Matrix::Zero(2, info.poseDim)),
+  RolloutState state = model->rollout()->start(2, {});
+  EXPECT_THROW(model->rollout()->start(2, Matrix::Zero(2, 5)), InputError);
+  EXPECT_THROW(model->rollout()->sampleFrame(state, Matrix::Zero(2, windowWidth(info) + 1),
+                                             Matrix::Zero(2, info.poseDim)),
                InputError);
-  EXPECT_THROW(
-      model->sampleFrame(state, Matrix::Zero(2, windowWidth(info)), Matrix::Zero(1, info.poseDim)),
-      InputError);
-  EXPECT_THROW(model->observe(state, Matrix::Zero(4, info.poseDim), Matrix::Zero(8, 3)),
+  EXPECT_THROW(model->rollout()->sampleFrame(state, Matrix::Zero(2, windowWidth(info)),
+                                             Matrix::Zero(1, info.poseDim)),
+               InputError);
+  EXPECT_THROW(model->density()->observe(state, Matrix::Zero(4, info.poseDim), Matrix::Zero(8, 3)),
                InputError);
 }
 
 TEST(EngineModel, AStoppedScoringEndsWithinAFewFrames) {
   const auto model = modelOf(wideFile("lstm"));
   const Sequence sequence = sequenceOf(model->info(), 1, 400);
-  RolloutState state = model->start(1, {});
+  RolloutState state = model->rollout()->start(1, {});
   const ObservedSequence observed{&sequence.poses, &sequence.controls};
   int calls = 0;
-  EXPECT_THROW(model->observeMany({&state, 1}, {&observed, 1},
-                                  [&] {
-                                    if (++calls == 5) throw CancelledError();
-                                  }),
+  EXPECT_THROW(model->density()->observeMany({&state, 1}, {&observed, 1},
+                                             [&] {
+                                               if (++calls == 5) throw CancelledError();
+                                             }),
                CancelledError);
   EXPECT_EQ(calls, 5);
   calls = 0;
-  state = model->start(1, {});
-  model->observeMany({&state, 1}, {&observed, 1}, [&] { ++calls; });
+  state = model->rollout()->start(1, {});
+  model->density()->observeMany({&state, 1}, {&observed, 1}, [&] { ++calls; });
   // Three steps of two layers: at least once for every eight frames of each.
   EXPECT_GE(calls, 3 * 2 * 400 / 8);
 }

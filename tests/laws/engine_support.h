@@ -24,10 +24,10 @@ inline std::vector<SequenceScore> scoresOf(const MotionModel& model,
   std::vector<RolloutState> states;
   std::vector<ObservedSequence> observed;
   for (const Sequence& s : sequences) {
-    states.push_back(model.start(1, {}));
+    states.push_back(model.rollout()->start(1, {}));
     observed.push_back({&s.poses, &s.controls});
   }
-  return model.observeMany(states, observed, [] {});
+  return model.density()->observeMany(states, observed, [] {});
 }
 
 /// Truth is the plain path in double precision. A sum of n products in float32 is the exact one of

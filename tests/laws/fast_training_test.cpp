@@ -160,7 +160,7 @@ struct NetRun {
                         (0.3 * torch::randn({3, window, 3}, random)).to(type),
                         torch::ones({3, window}, type),
                         {}};
-    batch.keep = net.drawDropout(batch, random);
+    batch.draws = net.draw(batch, random);
     net.execution = execution;
     net.train();
     net.to(type);

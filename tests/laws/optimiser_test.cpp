@@ -37,7 +37,7 @@ TrainingBatch unevenBatch(const TrainableModel& net) {
                     torch::zeros({7, 12}),
                     {}};
   for (int64_t b = 0; b < 7; ++b) out.mask[b].narrow(0, 0, 4 + b) = 1.f;
-  out.keep = net.drawDropout(out, random);
+  out.draws = net.draw(out, random);
   return out;
 }
 
@@ -54,7 +54,7 @@ Gradients gradientsWith(int accumulate, Execution execution) {
   Optimiser optimiser(net, config, *group);
   const StepReport report = optimiser.step(unevenBatch(net), 0.0, 1);
   EXPECT_TRUE(report.taken);
-  Gradients out{report.lossNats, report.norm, {}};
+  Gradients out{report.loss, report.norm, {}};
   for (const auto& p : net.parameters()) out.values.push_back(p.grad().clone());
   return out;
 }

@@ -11,13 +11,15 @@ namespace {
 constexpr double kFps = 20.0;
 
 /// Poses depend on the latent, on all controls in sight and on the pose before.
-class MemoryModel : public MotionModel {
+class MemoryModel : public MotionModel, public FrameGenerator, public DensityEstimator {
  public:
   explicit MemoryModel(int lookahead = 1) {
     m_info.poseDim = 6;
     m_info.controlDim = 3;
     m_info.context = 2;
     m_info.lookahead = lookahead;
+    m_info.latent.width = 6;
+    m_info.density = DensityKind::Exact;
     m_info.features.fps = kFps;
     auto body = std::make_shared<Skeleton>();
     body->names = {"Hips", "Head"};
@@ -26,6 +28,8 @@ class MemoryModel : public MotionModel {
     m_info.skeleton = body;
   }
   const ModelInfo& info() const override { return m_info; }
+  const FrameGenerator* rollout() const override { return this; }
+  const DensityEstimator* density() const override { return this; }
   RolloutState start(int batch, const Matrix&) const override {
     return {Matrix(Matrix::Zero(batch, m_info.poseDim))};
   }
@@ -37,10 +41,14 @@ class MemoryModel : public MotionModel {
       pose.col(i % pose.cols()) += static_cast<float>(i + 1) * window.col(i);
     return pose;
   }
-  SequenceScore observe(RolloutState&, const Matrix& poses, const Matrix&) const override {
-    return {.latent = poses, .loglikNats = std::vector<double>(static_cast<size_t>(poses.rows()))};
+  std::vector<SequenceScore> observeMany(std::span<RolloutState>,
+                                         std::span<const ObservedSequence> sequences,
+                                         const std::function<void()>&) const override {
+    std::vector<SequenceScore> out;
+    for (const ObservedSequence& s : sequences)
+      out.push_back({*s.poses, std::vector<double>(static_cast<size_t>(s.poses->rows()))});
+    return out;
   }
-  double baseDegreesOfFreedom() const override { return 0.0; }
   TensorFile save() const override { return {}; }
 
  private:

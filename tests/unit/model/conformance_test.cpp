@@ -22,8 +22,12 @@ TEST_P(PublishedVectors, AreReproduced) {
   }
   const auto config = (folder / "config.json").string();
   const Json json = readJson(config);
-  const auto model =
-      moglow::importCheckpoint((folder / "checkpoint.pkg").string(), json, config, {}, "test");
+  const auto model = moglow::importCheckpoint({.checkpoint = (folder / "checkpoint.pkg").string(),
+                                               .config = json,
+                                               .configOrigin = config,
+                                               .standardiser = {},
+                                               .variant = "test",
+                                               .stateDict = ""});
   EXPECT_EQ(model->info().parameters, json["parameters"].get<int64_t>());
   const auto errors = checkConformance(*model, (folder / "vectors.npz").string());
   EXPECT_GT(errors.frames, 0);

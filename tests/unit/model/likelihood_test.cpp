@@ -82,22 +82,21 @@ TEST(ObservationNoise, ComesInOppositePairsAndDependsOnTheFrameAlone) {
 }
 
 /// Each value of a pose is normal about the last frame's, with a scale of its own.
-class RandomWalk : public MotionModel {
+class RandomWalk : public MotionModel, public DensityEstimator {
  public:
   RandomWalk(double scale, ObservationNoise noise) : m_scale(scale) {
     m_info.poseDim = 6;
     m_info.controlDim = 3;
     m_info.context = 1;
+    m_info.latent.width = 6;
+    m_info.density = DensityKind::Exact;
     m_info.observation = noise;
     m_info.standardiser = {std::vector<float>(6, 0.f), std::vector<float>(6, 1.f),
                            std::vector<float>(3, 0.f), std::vector<float>(3, 1.f)};
   }
   const ModelInfo& info() const override { return m_info; }
+  const DensityEstimator* density() const override { return this; }
   RolloutState start(int, const Matrix& history) const override { return {history}; }
-  Matrix sampleFrame(RolloutState&, const Matrix&, const Matrix& z) const override { return z; }
-  SequenceScore observe(RolloutState& state, const Matrix& poses, const Matrix&) const override {
-    return against(state, poses, poses);
-  }
   std::vector<SequenceScore> observeMany(std::span<RolloutState> states,
                                          std::span<const ObservedSequence> sequences,
                                          const std::function<void()>&) const override {
@@ -107,7 +106,6 @@ class RandomWalk : public MotionModel {
                             sequences[i].targets ? *sequences[i].targets : *sequences[i].poses));
     return out;
   }
-  double baseDegreesOfFreedom() const override { return 0.0; }
   TensorFile save() const override { return {}; }
 
  private:

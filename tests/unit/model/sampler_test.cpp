@@ -15,29 +15,28 @@ namespace marey {
 namespace {
 
 /// A model that gives every latent it receives back as the pose.
-class EchoModel : public MotionModel {
+class EchoModel : public MotionModel, public FrameGenerator {
  public:
-  explicit EchoModel(double df = 0.0) : m_df(df) {
+  explicit EchoModel(double df = 0.0) {
+    m_info.latent = {.width = 5, .degreesOfFreedom = df};
     m_info.poseDim = 5;
     m_info.controlDim = 3;
     m_info.context = 2;
     m_info.lookahead = 1;
   }
   const ModelInfo& info() const override { return m_info; }
+  const FrameGenerator* rollout() const override { return this; }
   RolloutState start(int, const Matrix& history) const override { return {history}; }
   Matrix sampleFrame(RolloutState&, const Matrix& window, const Matrix& latent) const override {
     windows.push_back(window);
     return latent;
   }
-  SequenceScore observe(RolloutState&, const Matrix&, const Matrix&) const override { return {}; }
-  double baseDegreesOfFreedom() const override { return m_df; }
   TensorFile save() const override { return {}; }
 
   mutable std::vector<Matrix> windows;
 
  private:
   ModelInfo m_info;
-  double m_df;
 };
 
 SampleRequest straight(int frames, int samples) {
@@ -197,8 +196,8 @@ TEST(Scorer, ALongClipScoredInPiecesIsTheSameAsInOne) {
   for (int t = 0; t < 3; ++t) history.middleCols(t * f.pose.cols(), f.pose.cols()) = f.pose.row(t);
   Matrix control(f.control.rows() + 1, 3);  // one frame of lookahead
   control << f.control, f.control.bottomRows(1);
-  RolloutState state = model.start(1, history);
-  const auto whole = model.observe(state, f.pose.bottomRows(f.pose.rows() - 3), control);
+  RolloutState state = model.density()->start(1, history);
+  const auto whole = model.density()->observe(state, f.pose.bottomRows(f.pose.rows() - 3), control);
   ASSERT_EQ(score.loglikNats.size(), whole.loglikNats.size());
   for (size_t t = 0; t < whole.loglikNats.size(); ++t) {
     EXPECT_NEAR(score.loglikNats[t], whole.loglikNats[t], 1e-3);

@@ -7,7 +7,7 @@
 
 #include "../base/support.h"
 
-#include "model/trainer.h"
+#include "model/build.h"
 #include "moglow/family.h"
 #include "motion/walker.h"
 

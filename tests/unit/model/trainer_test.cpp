@@ -184,7 +184,7 @@ TEST(Trainer, ABrokenAndResumedRunIsTheSameAsAnUnbrokenOne) {
   EXPECT_NE(a.tensors.at(kBias).bytes, test::tinyFile().tensors.at(kBias).bytes) << "no training";
   EXPECT_EQ(logRows(folder / "whole"), logRows(folder / "broken"));
   EXPECT_EQ(logRows(folder / "whole").size(), 3u);  // header and two checkpoints
-  EXPECT_EQ(whole.validBitsPerFrame, resumed.validBitsPerFrame);
+  EXPECT_EQ(whole.valid, resumed.valid);
   EXPECT_EQ(whole.testNatsPerFrame, resumed.testNatsPerFrame);
 }
 

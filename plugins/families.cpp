@@ -3,11 +3,12 @@
 #include <array>
 
 #include "moglow/family.h"
+#include "rnn/family.h"
 
 namespace marey {
 
 std::span<const ModelFamily> modelFamilies() {
-  static const std::array<ModelFamily, 1> families{moglow::family()};
+  static const std::array families{moglow::family(), rnn::family()};
   return families;
 }
 

@@ -72,7 +72,7 @@ void addOne(CLI::App& bench, Context& context, const std::string& name, const st
   auto o = std::make_shared<Options>();
   auto* command =
       addCommand(bench, context, name, summary,
-                 "marey bench " + name + " --config resources/models/moglow-human.json --batch 20",
+                 "marey bench " + name + " --config resources/models/mg-a.json --batch 20",
                  [o, &context, name, measure] { run(*o, context, name, measure); });
   command->add_option("--config", o->config, "Hyper-parameters (JSON); weights are random")
       ->required();

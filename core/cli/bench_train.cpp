@@ -62,7 +62,7 @@ void addTrainBenchCommand(CLI::App& bench, Context& context) {
   auto o = std::make_shared<Options>();
   auto* command = addCommand(
       bench, context, "train", "How fast a step of training is",
-      "marey bench train --config resources/models/moglow-small.json --batch 100 --frames 70",
+      "marey bench train --config resources/models/mg-a.json --batch 100 --frames 70",
       [o, &context] { run(*o, context); });
   const auto number = [&](const char* name, int& value, const char* help) {
     command->add_option(name, value, help)->check(CLI::Range(1, 100000))->capture_default_str();

@@ -16,7 +16,7 @@ namespace marey::cli {
 namespace {
 
 struct Options {
-  std::string model, config, out, checkpoint, data, vectors, name, stateDict, card;
+  std::string model, config, family, out, checkpoint, data, vectors, name, stateDict, card;
   double temperature = -1.0;  ///< below 0: not given
   bool half = false;
 };
@@ -128,6 +128,26 @@ void runExport(const Options& o, const Context& context) {
                 fmt::format("{}: {:.1f} MB", o.out, static_cast<double>(bytes) / 1e6));
 }
 
+std::string familyNames() {
+  std::string out;
+  for (const ModelFamily& family : modelFamilies())
+    out += fmt::format("{}{}", out.empty() ? "" : ", ", family.name);
+  return out;
+}
+
+void runExample(const Options& o, const Context& context) {
+  const ModelFamily& family = familyNamed(o.family, modelFamilies(), "FAMILY");
+  Json described = Json::object();
+  described["title"] = family.title;
+  described["config"] = family.example;
+  if (!o.out.empty()) {
+    writeJson(o.out, family.example);
+    described["written"] = o.out;
+  }
+  context.print(described, o.out.empty() ? family.example.dump(2)
+                                         : fmt::format("{}: {}", o.out, family.title));
+}
+
 void runCheck(const Options& o, const Context& context) {
   const auto model = loadModel(o.model, modelFamilies());
   const ConformanceErrors e = checkConformance(*model, o.vectors);
@@ -147,15 +167,21 @@ void addModelCommand(CLI::App& app, Context& context) {
   auto* model = app.add_subcommand("model", "Look into, import, export and check models");
   model->require_subcommand(1);
   auto* info = addCommand(*model, context, "info", "What a model or a configuration is",
-                          "marey model info --config resources/models/moglow-human.json",
+                          "marey model info --config resources/models/mg-a.json",
                           [o, &context] { runInfo(*o, context); });
   info->add_option("MODEL", o->model, "Model (.marey)");
   info->add_option("--config", o->config, "Hyper-parameters (JSON)");
 
+  auto* example = addCommand(
+      *model, context, "example", "A small configuration of a family, to start from",
+      "marey model example FAMILY --out config.json", [o, &context] { runExample(*o, context); });
+  example->add_option("FAMILY", o->family, familyNames())->required();
+  example->add_option("--out", o->out, "File to write (default: print it)");
+
   auto* import =
       addCommand(*model, context, "import", "Read the authors' PyTorch checkpoint (.pkg, .pt)",
                  "marey model import trained.pkg --config hparams.json --data "
-                 "all_locomotion_train_20fps.npz --out moglow.marey",
+                 "all_locomotion_train_20fps.npz --out model.marey",
                  [o, &context] { runImport(*o, context); });
   import->add_option("CHECKPOINT", o->checkpoint, "PyTorch checkpoint; nothing in it is executed")
       ->required();
@@ -183,7 +209,7 @@ void addModelCommand(CLI::App& app, Context& context) {
       ->check(CLI::NonNegativeNumber);
 
   auto* check = addCommand(*model, context, "check", "Compare a model with reference vectors",
-                           "marey model check moglow.marey --vectors vectors.npz",
+                           "marey model check model.marey --vectors vectors.npz",
                            [o, &context] { runCheck(*o, context); });
   check->add_option("MODEL", o->model, "Model (.marey)")->required();
   check->add_option("--vectors", o->vectors, "x, control, z, loglik_nats, z_in, x_sampled (.npz)")

@@ -72,7 +72,7 @@ void addTrainCommand(CLI::App& app, Context& context) {
   auto o = std::make_shared<Options>();
   auto* command = addCommand(
       app, context, "train", "Train or build a model of a data set",
-      "marey train resources/models/moglow-small.json --data walk.marey "
+      "marey train config.json --data walk.marey "
       "--out runs/small --minutes 60",
       [o, &context] { run(*o, context); }, Processes::Own);
   command->add_option("CONFIG", o->config, "Hyper-parameters (JSON)")->required();

@@ -55,7 +55,7 @@ std::shared_ptr<const Skeleton> smplSkeleton(int joints) {
   return std::make_shared<const Skeleton>(std::move(out));
 }
 
-Skeleton moglowSkeleton() {
+Skeleton locomotionSkeleton() {
   return unmeasured(
       {"Hips",         "LeftUpLeg", "LeftLeg",        "LeftFoot", "LeftToeBase",    "RightUpLeg",
        "RightLeg",     "RightFoot", "RightToeBase",   "Spine",    "Spine1",         "Neck1",

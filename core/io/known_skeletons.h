@@ -9,7 +9,7 @@ namespace marey::io {
 
 /// The 21 joints of the field's locomotion NPZ files (Holden et al. 2017's choice out of CMU's
 /// 31): hips, legs, spine, arms; left first. Offsets are zero.
-Skeleton moglowSkeleton();
+Skeleton locomotionSkeleton();
 /// The 27 joints of the dog of Zhang et al. 2018, end sites included. Offsets are zero.
 Skeleton dogSkeleton();
 /// The joints of SMPL (Loper et al. 2015; 24, or 22 without the hands), SMPL-H (52: 15 joints of

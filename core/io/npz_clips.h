@@ -4,7 +4,7 @@
 // faces with the body, then its sideways and forward displacement and turn, in CMU's unit, 20 fps.
 // World motion: the pose of a frame is placed by the present rotation and offset; then the turn
 // R = Ry(-dyaw) R and the offset += R (dx, 0, dz) lead to the next frame (plot_animation of the
-// MoGlow code, after Holden et al. 2016).
+// code of Henter et al. 2020, after Holden et al. 2016).
 //
 // Marey's: `positions` (T, J, 3) float32, metres, Y up; `fps`; `parents` (J); `offsets` (J, 3);
 // `end_site_parents` (E), `end_site_offsets` (E, 3); and as text (NumPy's '<U') `format`, `name`,

@@ -53,7 +53,7 @@ Clip featureClip(const float* rows, int64_t frames, std::optional<double> fps,
                  const ReadOptions& options) {
   Clip clip;
   clip.name = fmt::format("{}_{:04}", std::filesystem::path(origin).stem().string(), number);
-  clip.skeleton = std::make_shared<const Skeleton>(moglowSkeleton());
+  clip.skeleton = std::make_shared<const Skeleton>(locomotionSkeleton());
   clip.source.path = origin;
   const std::string where = fmt::format("{}, clip {} (of 0 to {})", origin, number, count - 1);
   requireFinite(rows, frames, *clip.skeleton, {.path = where});

@@ -86,6 +86,8 @@ TrainResult train(const DataSet& data, const TrainRequest& request,
                   std::span<const ModelFamily> families, Progress& progress) {
   requireKnownKeys(request);
   requireStatedSizes(request, data);
+  requireFinite(data.train, "training data");
+  requireFinite(data.test, "test data");
   const ModelFamily& family = familyOf(request.config, families, request.configOrigin);
   return family.build ? buildAtOnce(data, request, family, progress)
                       : trainByGradient(data, request, family, progress);

@@ -35,6 +35,10 @@ struct ImportRequest {
 
 struct ModelFamily {
   std::string name;
+  std::string title;  ///< one line for people: what it is, and its source
+  /// A small configuration ({"family", "name", "model", "training"}) that trains in a minute or so:
+  /// what a new file starts from.
+  Json example;
   /// From a stored model. Strict: unknown, missing, mis-shaped or non-finite tensors throw
   /// InputError naming `origin`. The file is handed over, so that weights are held once.
   std::function<std::unique_ptr<MotionModel>(TensorFile, const std::string& origin,

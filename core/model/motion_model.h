@@ -51,8 +51,8 @@ enum class DensityKind {
 std::string nameOf(DensityKind kind);
 
 struct ModelInfo {
-  std::string family;   ///< "moglow", ...
-  std::string variant;  ///< free name of the configuration, "moglow-small"
+  std::string family;   ///< as in the list of families
+  std::string variant;  ///< free name of the configuration
   int poseDim = 0, controlDim = 0;
   int context = 0;    ///< tau: past frames that the model sees
   int lookahead = 0;  ///< future control frames that it sees

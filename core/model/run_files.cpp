@@ -27,7 +27,7 @@ void startLog(const std::filesystem::path& run, const std::string& unit,
   const std::string column = columnOf(unit);
   std::string header = fmt::format(
       "step,seconds,learning_rate,train_{0},valid_{0},test_{0},gradient_norm,skipped", column);
-  for (const std::string& term : terms) header += "," + columnOf(term);
+  for (const std::string& term : terms) header += fmt::format(",{}", columnOf(term));
   writeFileAtomically(logOf(run), header + "\n");
 }
 

@@ -92,8 +92,6 @@ class Run {
         m_device(deviceOf(request)),
         m_group(nn::joinProcesses(request.process,
                                   nn::meetingPoint(fs::weakly_canonical(request.run).string()))) {
-    requireFinite(data.train, "training data");
-    requireFinite(data.test, "test data");
     m_trainee = m_family.makeTrainee(
         request.config.at("model"), request.configOrigin,
         {data.poseDim(), data.controlDim(), data.skeleton, data.standardiser}, request.seed);

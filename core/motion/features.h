@@ -1,4 +1,4 @@
-// The pose and control features of the MoGlow papers (Habibie et al. 2017): joint positions
+// The pose and control features of Henter et al. 2020 (as in Habibie et al. 2017): joint positions
 // in a floor-level frame that follows the character, and that frame's motion as control.
 #pragma once
 

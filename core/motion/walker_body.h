@@ -15,7 +15,7 @@
 
 namespace marey::walker {
 
-/// Joints of walkerSkeleton() by index: the topology of the MoGlow papers' human.
+/// Joints of walkerSkeleton() by index: the topology of the human of Henter et al. 2020.
 enum Joint {
   Hips,
   LeftUpLeg,

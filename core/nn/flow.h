@@ -1,5 +1,5 @@
 // Layers of a conditional normalising flow over sequences (Kingma & Dhariwal 2018, "Glow";
-// Henter et al. 2020, "MoGlow", Sec. 3). `toLatent` maps data to latent, `toData` back.
+// Henter et al. 2020, Sec. 3). `toLatent` maps data to latent, `toData` back.
 //
 // Shapes: values [B, T, D], conditioning [B, T, C], log-determinants [B, T] (of toLatent).
 // Recurrent state is a value passed in and out; a default-constructed one starts at zero.

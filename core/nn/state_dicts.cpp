@@ -12,7 +12,7 @@ namespace {
 /// call the network within another module.
 constexpr std::array kWrappers = std::to_array<std::string_view>(
     {"module", "_orig_mod", "_forward_module", "_fsdp_wrapped_module", "_module", "model", "_model",
-     "net", "_net", "network", "graph", "glow", "moglow", "generator", "student"});
+     "net", "_net", "network", "graph", "glow", "generator", "student"});
 
 /// Dictionaries whose tensors have the names of weights and are none.
 constexpr std::array kTrainingState = std::to_array<std::string_view>(

@@ -17,7 +17,7 @@ std::vector<double> meanBoneLengths(const std::vector<Clip>& clips);
 /// Sum over frames and bones of the squared deviation from `reference`, square metres.
 /// Throws InputError unless there is a reference for every bone.
 double squaredBoneError(const Clip& clip, const std::vector<double>& reference);
-/// Root mean square deviation over all bones and frames (MoGlow 2020, Sec. 5.3), centimetres.
+/// Root mean square deviation over all bones and frames (Henter et al. 2020, Sec. 5.3), centimetres.
 double boneLengthRmseCm(const std::vector<Clip>& clips, const std::vector<double>& reference);
 
 /// Throws InputError unless every clip has the joints of the first one.

@@ -1,4 +1,4 @@
-// Footsteps by a speed tolerance (MoGlow 2020, Sec. 5.3): how many steps a motion seems to make
+// Footsteps by a speed tolerance (Henter et al. 2020, Sec. 5.3): how many steps a motion seems to make
 // when a foot counts as planted below a speed, for a sweep of speeds.
 #pragma once
 

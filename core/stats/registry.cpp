@@ -124,7 +124,7 @@ std::vector<Statistic> bodyStatistics() {
       {"bone_length_rmse", "cm",
        "Root mean square deviation of bone lengths over bones and frames from their reference: the "
        "mean of natural motion, else the clip's skeleton, else the mean of the clips.",
-       "Henter, Alexanderson, Beskow 2020 (MoGlow), Sec. 5.3; the choice of reference is Marey's",
+       "Henter, Alexanderson, Beskow 2020, Sec. 5.3; the choice of reference is Marey's",
        false, hasBones, ratioRule(boneError),
        combineRatio([](double square) { return 100.0 * std::sqrt(square); })},
       {"jerk", "m/s^3",

@@ -15,9 +15,9 @@
 namespace marey::stats {
 namespace {
 
-const char* const kMoGlow = "Henter, Alexanderson, Beskow 2020 (MoGlow), Sec. 5.3";
-const char* const kFromMoGlow =
-    "Marey, of the steps of Henter, Alexanderson, Beskow 2020 (MoGlow), Sec. 5.3";
+const char* const kHenter = "Henter, Alexanderson, Beskow 2020, Sec. 5.3";
+const char* const kOfHentersSteps =
+    "Marey, of the steps of Henter, Alexanderson, Beskow 2020, Sec. 5.3";
 
 /// Foot speeds that enter a median; of longer sets every k-th frame does.
 constexpr double kSpeedLimit = 1e6;
@@ -53,7 +53,7 @@ WeightedValue fromCurve(const std::vector<ClipPart>& parts, const StatisticSetti
 }
 
 Statistic footstep(const std::string& name, const std::string& unit, const std::string& definition,
-                   CurveReader read, const char* source = kMoGlow) {
+                   CurveReader read, const char* source = kHenter) {
   return {.name = name,
           .unit = unit,
           .definition = definition,
@@ -133,7 +133,7 @@ std::vector<Statistic> footsteps() {
                [](const FootstepCurve& c) { return c.v95CmS; }),
       footstep(
           "footstep_rate", "1/s", "Footsteps f(v95), of all feet, per second of motion.",
-          [](const FootstepCurve& c) { return c.stepsPerS; }, kFromMoGlow),
+          [](const FootstepCurve& c) { return c.stepsPerS; }, kOfHentersSteps),
       footstep("footstep_duration", "s", "Mean duration of the footsteps at v95.",
                [](const FootstepCurve& c) { return c.durationMeanS; }),
       footstep("footstep_duration_sd", "s",

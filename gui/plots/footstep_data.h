@@ -1,4 +1,4 @@
-// Footsteps against speed tolerance (MoGlow 2020, Sec. 5.3) of several sets.
+// Footsteps against speed tolerance (Henter et al. 2020, Sec. 5.3) of several sets.
 #pragma once
 
 #include <optional>

@@ -4,27 +4,10 @@
 #include <array>
 
 #include "base/error.h"
+#include "model/model_parts.h"
 #include "moglow/engine_rollout.h"
 
 namespace marey::moglow {
-namespace {
-
-Standardiser unitsOf(const ModelInfo& info) {
-  const auto filled = [](const std::vector<float>& values, int size, float fallback) {
-    return values.empty() ? std::vector<float>(static_cast<size_t>(size), fallback) : values;
-  };
-  const Standardiser& s = info.standardiser;
-  return {filled(s.poseMean, info.poseDim, 0.f), filled(s.poseStd, info.poseDim, 1.f),
-          filled(s.controlMean, info.controlDim, 0.f), filled(s.controlStd, info.controlDim, 1.f)};
-}
-
-void checkShape(const char* what, const Matrix& m, long rows, long columns) {
-  if (m.rows() != rows || m.cols() != columns)
-    throwInput({.path = what}, fmt::format("{} x {}", rows, columns), "{} x {}", m.rows(),
-               m.cols());
-}
-
-}  // namespace
 
 EngineModel::EngineModel(ModelInfo info, const Config& config, TensorFile file,
                          std::unique_ptr<const EngineBase> base,
@@ -48,7 +31,7 @@ RolloutState EngineModel::start(int batch, const Matrix& history) const {
               .pose = nn::AlignedFloats(m_base ? rows * static_cast<size_t>(m_config.poseDim) : 0),
               .flow = m_flow.start(batch)};
   if (history.rows() > 0) {
-    checkShape("history", history, batch, historyWidth());
+    requireShape("history", history, batch, historyWidth());
     standardise(history.data(), history.size(), m_units.poseMean, m_units.poseStd,
                 out.history.data());
   }
@@ -60,8 +43,8 @@ Matrix EngineModel::sampleFrame(RolloutState& state, const Matrix& controlWindow
   auto& r = std::any_cast<Rollout&>(state.value);
   const long rows = r.flow.rows, d = m_config.poseDim, passed = m_config.passedChannels(),
              stride = m_flow.stride(), width = historyWidth();
-  checkShape("control window", controlWindow, rows, controlWidth());
-  checkShape("latent", latent, rows, d);
+  requireShape("control window", controlWindow, rows, controlWidth());
+  requireShape("latent", latent, rows, d);
   standardise(controlWindow.data(), controlWindow.size(), m_units.controlMean, m_units.controlStd,
               r.control.data());
   const std::array<nn::Inputs, 2> plain{

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "model/model_parts.h"
 #include "moglow/engine_rollout.h"
 
 namespace marey::moglow {

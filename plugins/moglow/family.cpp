@@ -83,6 +83,19 @@ bool statesFloor(const Json& json) {
   return model.is_object() && model.contains("observation_floor_mm");
 }
 
+Json example() {
+  return {{"family", kFamily},
+          {"name", "moglow-tiny"},
+          {"model", {{"tau", 3}, {"steps", 4}, {"hidden", 32}, {"dropout", 0.5}}},
+          {"training",
+           {{"window_s", 2.0},
+            {"hop_s", 1.0},
+            {"batch", 16},
+            {"learning_rate", 0.002},
+            {"steps", 300},
+            {"checkpoint_every", 50}}}};
+}
+
 /// The authors' hparams, and the flat keys of vectors computed by their code.
 bool recognises(const Json& config) {
   return config.is_object() && (config.contains("Glow") || config.contains("lstm_layers"));
@@ -103,6 +116,8 @@ Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const Tr
 
 ModelFamily family() {
   return {.name = kFamily,
+          .title = "MoGlow: an autoregressive normalising flow (Henter et al. 2020)",
+          .example = example(),
           .load = load,
           .describe = describe,
           .recognises = recognises,

@@ -153,7 +153,7 @@ TEST(FastTrainingPath, ASecondGradientIsRefused) {
 
 /// Log-likelihoods and gradients of a model in training on a few windows of noise.
 struct NetRun {
-  NetRun(TrainableModel& net, int64_t poseDim, Execution execution, torch::Dtype type) {
+  NetRun(moglow::Net& net, int64_t poseDim, Execution execution, torch::Dtype type) {
     auto random = generator(6);
     const int64_t window = net.context() + 6 + net.lookahead();
     TrainingBatch batch{(0.3 * torch::randn({3, window, poseDim}, random)).to(type),
@@ -203,9 +203,10 @@ TEST(FastTrainingPath, TrainsOnTheInnovationsOfAKinematicBase) {
   const ModelInfo info = loadCommon(file, path);
   const Trainee trainee = moglow::family().makeTrainee(
       info.config, path, {info.poseDim, info.controlDim, info.skeleton, info.standardiser}, 1);
-  loadWeights(*trainee.net, file, path);
-  const NetRun fast(*trainee.net, info.poseDim, Execution::Engine, torch::kFloat32),
-      plain(*trainee.net, info.poseDim, Execution::Reference, torch::kFloat32);
+  auto& net = dynamic_cast<moglow::Net&>(*trainee.net);
+  loadWeights(net, file, path);
+  const NetRun fast(net, info.poseDim, Execution::Engine, torch::kFloat32),
+      plain(net, info.poseDim, Execution::Reference, torch::kFloat32);
   // Not float64: a base chooses regimes by thresholds. Noise is far from what it has learned, and
   // large innovations round coarsely.
   EXPECT_GT(fast.errorAgainst(plain), 0.0);

@@ -166,7 +166,56 @@ TEST(Includes, GoDownTheHouseOnly) {
   EXPECT_GT(count, 100u) << "the sources were not found";
 }
 
+/// Families of models: the folders of plugins/.
+Names familyNames() {
+  Names out;
+  for (const auto& entry : fs::directory_iterator(fs::path(MAREY_SOURCE_DIR) / "plugins"))
+    if (entry.is_directory()) out.insert(entry.path().filename());
+  return out;
+}
+
+/// The first family that a line names, be it in another case or as part of an identifier; words of
+/// which a short name is only a part do not count ("kernnames" is no "rnn").
+std::string familyIn(const std::string& line, const Names& families) {
+  std::string lower = line;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  for (const std::string& family : families) {
+    const std::regex word("(^|[^a-z])" + family + "([^a-z]|$)|[a-z]?" + family +
+                          "(model|family|skeleton|config|net)");
+    if (std::regex_search(lower, word)) return family;
+  }
+  return {};
+}
+
+TEST(Families, AreNamedInTheirOwnFoldersOnly) {
+  const Names families = familyNames();
+  ASSERT_GE(families.size(), 2U);
+  for (const char* top : {"core", "gui"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(MAREY_SOURCE_DIR) / top)) {
+      if (!entry.is_regular_file()) continue;
+      std::ifstream in(entry.path());
+      int number = 0;
+      for (std::string line; std::getline(in, line);) {
+        ++number;
+        const std::string family = familyIn(line, families);
+        if (!family.empty())
+          ADD_FAILURE() << entry.path().string() << ":" << number << " names " << family;
+      }
+    }
+}
+
 // The rules themselves, on cases that break them.
+TEST(TheRules, FindAFamilysName) {
+  const Names families{"moglow", "rnn"};
+  EXPECT_EQ(familyIn("  using moglow::family;", families), "moglow");
+  EXPECT_EQ(familyIn("Skeleton moglowSkeleton();", families), "moglow");
+  EXPECT_EQ(familyIn("// as in MoGlow 2020", families), "moglow");
+  EXPECT_EQ(familyIn("if (name == \"rnn\")", families), "rnn");
+  EXPECT_EQ(familyIn("internName(x)", families), "");
+  EXPECT_EQ(familyIn("turns", families), "");
+}
+
 TEST(TheRules, FindALinkUpwardsQtAndUnknownFolders) {
   std::istringstream lines(
       "marey_base core/base marey_fmt marey_motion\n"

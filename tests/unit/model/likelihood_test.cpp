@@ -176,7 +176,7 @@ TEST(Likelihood, ComparesFramesThatEveryModelScoresAndNamesWhatIsTooShort) {
 }
 
 TEST(Likelihood, SaysWhetherTheNumberHangsOnTheFloor) {
-  ModelInfo info{.poseDim = 63};
+  ModelInfo info{.poseDim = 63, .density = DensityKind::Exact};
   EXPECT_TRUE(floorText(info).starts_with("No floor"));
   info.observation = {5e-4, 4};
   info.provenance = {{"floor_directions", 20.0}};

@@ -1,0 +1,80 @@
+#include "rnn/family.h"
+
+#include "rnn/models.h"
+
+#include "base/error.h"
+#include "model/weights.h"
+
+namespace marey::rnn {
+namespace {
+
+constexpr const char* kFamily = "rnn";
+
+/// Completes what the configuration says about a model.
+ModelInfo completed(ModelInfo info, const Config& config) {
+  info.context = config.past;
+  info.lookahead = config.lookahead;
+  info.parameters = config.parameters();
+  return info;
+}
+
+ModelInfo describe(const Json& json, const std::string& origin) {
+  const Config config = configFromJson(json, origin);
+  ModelInfo out;
+  out.family = kFamily;
+  if (json.contains("name") && json["name"].is_string()) out.variant = json["name"];
+  out.poseDim = config.poseDim;
+  out.controlDim = config.controlDim;
+  out.config = toJson(config);
+  return completed(std::move(out), config);
+}
+
+std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
+                                  const LoadOptions& options) {
+  ModelInfo info = loadCommon(file, origin);
+  const Config config = configFromJson(info.config, origin);
+  if (config.poseDim != info.poseDim || config.controlDim != info.controlDim)
+    throwInput({.path = origin}, "a configuration of the stored dimensions", "{}/{} beside {}/{}",
+               config.poseDim, config.controlDim, info.poseDim, info.controlDim);
+  auto net = std::make_shared<Net>(config, 0);
+  loadWeights(*net, file, origin);
+  info = completed(std::move(info), config);
+  if (options.execution == Execution::Engine)
+    return std::make_unique<EngineModel>(std::move(info), config, std::move(file));
+  const auto type = options.execution == Execution::Exact ? torch::kFloat64 : torch::kFloat32;
+  return std::make_unique<ReferenceModel>(std::move(info), std::move(net), type);
+}
+
+Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const TraineeData& data,
+                    uint64_t seed) {
+  Config config = configFromJson(modelConfig, origin);
+  config.poseDim = data.poseDim;
+  config.controlDim = data.controlDim;
+  return {std::make_shared<Net>(config, seed), toJson(config)};
+}
+
+Json example() {
+  return {{"family", kFamily},
+          {"name", "rnn-small"},
+          {"model", {{"hidden", 64}, {"layers", 1}, {"cell", "lstm"}}},
+          {"training",
+           {{"window_s", 2.0},
+            {"hop_s", 1.0},
+            {"batch", 16},
+            {"learning_rate", 0.003},
+            {"steps", 500},
+            {"checkpoint_every", 50}}}};
+}
+
+}  // namespace
+
+ModelFamily family() {
+  return {.name = kFamily,
+          .title = "RNN: from control to poses, deterministic (Henter et al. 2020, Sec. 4.3)",
+          .example = example(),
+          .load = load,
+          .describe = describe,
+          .makeTrainee = makeTrainee};
+}
+
+}  // namespace marey::rnn

@@ -1,0 +1,344 @@
+// What holds of anything that makes motion: one suite over every family in the list and a toy that
+// the core does not know. Nothing here names a family.
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "../unit/base/support.h"
+#include "families.h"
+#include "toy_family.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "model/build.h"
+#include "model/sampler.h"
+#include "model/scorer.h"
+#include "motion/walker.h"
+#include "nn/team.h"
+
+namespace marey {
+namespace {
+
+constexpr double kFps = 20.0;
+
+std::vector<ModelFamily> allFamilies() {
+  std::vector<ModelFamily> out(modelFamilies().begin(), modelFamilies().end());
+  out.push_back(test::toyFamily());
+  return out;
+}
+
+std::vector<Clip> walks(int count, double seconds, uint64_t seed) {
+  std::vector<Clip> out;
+  for (auto& walked : walkerDataSet(count, seconds, seed, kFps))
+    out.push_back(std::move(walked.clip));
+  return out;
+}
+
+const DataSet& data() {
+  static const DataSet set = [] {
+    Progress progress;
+    DataSet out = prepareDataSet(walks(4, 4.0, 2), walks(1, 4.0, 9), {}, progress);
+    out.hash = "laws";
+    return out;
+  }();
+  return set;
+}
+
+SampleRequest turning(int samples, int first = 0) {
+  SampleRequest out{.path = {}, .samples = samples, .seed = 3, .warmUpS = 0.5};
+  out.firstSample = first;
+  for (int t = 0; t < 20; ++t) out.path.push_back({0.01 * t, 0.05 * t, 0.03 * t});
+  return out;
+}
+
+std::vector<Matrix> posesOf(const MotionModel& model, const SampleRequest& request) {
+  Progress progress;
+  std::vector<Matrix> out;
+  for (auto& sequence : sampleSequences(model, request, progress))
+    out.push_back(std::move(sequence.pose));
+  return out;
+}
+
+/// The example of a family, trained for 20 steps where it is trained.
+struct Made {
+  TrainResult result;
+  TensorFile file;
+  std::vector<double> losses;  ///< of the log's rows
+};
+
+std::vector<double> lossesIn(const std::filesystem::path& log) {
+  std::vector<double> out;
+  std::istringstream in(readFile(log));
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    double step = 0, seconds = 0, rate = 0, loss = 0;
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &step, &seconds, &rate, &loss) == 4)
+      out.push_back(loss);
+  }
+  return out;
+}
+
+TrainRequest requestOf(const ModelFamily& family, const std::filesystem::path& run) {
+  TrainRequest request;
+  request.config = family.example;
+  request.configOrigin = "example.json";
+  request.run = run;
+  if (family.makeTrainee) {
+    request.config["training"]["checkpoint_every"] = 10;
+    request.steps = 20;
+  }
+  return request;
+}
+
+const Made& madeBy(const ModelFamily& family) {
+  static std::map<std::string, Made> made;
+  if (const auto found = made.find(family.name); found != made.end()) return found->second;
+  const test::TempFolder folder;
+  Progress progress;
+  const TrainRequest request = requestOf(family, folder / "run");
+  Made out{.result = train(data(), request, allFamilies(), progress), .file = {}, .losses = {}};
+  out.file = readTensorFile(out.result.last);
+  if (family.makeTrainee) out.losses = lossesIn(request.run / "log.csv");
+  return made.emplace(family.name, std::move(out)).first->second;
+}
+
+class FamilyLaws : public testing::TestWithParam<ModelFamily> {
+ protected:
+  const ModelFamily& family() const { return GetParam(); }
+  std::unique_ptr<MotionModel> model(Execution execution = Execution::Engine) const {
+    return family().load(madeBy(family()).file, "law.marey", {.execution = execution});
+  }
+  std::string failureOf(TensorFile file) const {
+    try {
+      family().load(std::move(file), "law.marey", {});
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return {};
+  }
+};
+
+TEST_P(FamilyLaws, SaysWhatItIsAndWhatItCanDo) {
+  const auto one = model();
+  const ModelInfo& info = one->info();
+  EXPECT_EQ(info.family, family().name);
+  EXPECT_FALSE(family().title.empty());
+  EXPECT_EQ(info.poseDim, data().poseDim());
+  EXPECT_EQ(info.controlDim, data().controlDim());
+  EXPECT_GT(info.parameters, 0);
+  EXPECT_TRUE(one->rollout() != nullptr || one->wholeClip() != nullptr);
+  EXPECT_EQ(info.causal, one->rollout() != nullptr);
+  EXPECT_EQ(info.density != DensityKind::None, one->density() != nullptr);
+  EXPECT_EQ(info.features, data().options.features);
+  // A configuration says the same as the model that comes of it.
+  const ModelInfo described = family().describe(info.config, "law.marey");
+  EXPECT_EQ(described.parameters, info.parameters);
+  EXPECT_EQ(described.latent, info.latent);
+  EXPECT_EQ(described.context, info.context);
+  EXPECT_EQ(described.lookahead, info.lookahead);
+  EXPECT_EQ(described.causal, info.causal);
+  EXPECT_EQ(described.density, info.density);
+}
+
+TEST_P(FamilyLaws, LearnsInTwentyStepsWhereItIsTrained) {
+  const Made& made = madeBy(family());
+  if (!family().makeTrainee) {
+    EXPECT_EQ(made.result.steps, 0);
+    EXPECT_TRUE(static_cast<bool>(family().build));
+    return;
+  }
+  EXPECT_EQ(made.result.steps, 20);
+  ASSERT_EQ(made.losses.size(), 2U);
+  EXPECT_LT(made.losses[1], made.losses[0]);
+  EXPECT_FALSE(made.result.objective.name.empty());
+  EXPECT_FALSE(made.result.objective.unit.empty());
+  EXPECT_EQ(std::isnan(made.result.testNatsPerFrame), !made.result.objective.likelihood);
+}
+
+TEST_P(FamilyLaws, GivesTheSameBitsInAnyCompanyAndFromAnyFile) {
+  const auto one = model();
+  const auto all = posesOf(*one, turning(5));
+  const auto some = posesOf(*one, turning(2, 2));
+  EXPECT_TRUE(all[2] == some[0]);
+  EXPECT_TRUE(all[3] == some[1]);
+  {
+    const nn::OneThread alone;
+    EXPECT_TRUE(posesOf(*one, turning(5)) == all);
+  }
+  const auto again = family().load(one->save(), "again.marey", {});
+  EXPECT_TRUE(posesOf(*again, turning(5)) == all);
+}
+
+TEST_P(FamilyLaws, DiffersFromSampleToSampleUnlessItDrawsNothing) {
+  const auto one = model();
+  const auto motions = posesOf(*one, turning(2));
+  ASSERT_TRUE(motions[0].allFinite());
+  EXPECT_EQ(motions[0] == motions[1], one->info().deterministic());
+  if (!one->info().deterministic()) return;
+  SampleRequest cooled = turning(1);
+  cooled.temperature = 0.5;
+  EXPECT_THROW(posesOf(*one, cooled), InputError);
+}
+
+TEST_P(FamilyLaws, FollowsItsControl) {
+  const auto one = model();
+  SampleRequest still = turning(1);
+  for (RootFrame& frame : still.path) frame = {};
+  EXPECT_FALSE(posesOf(*one, turning(1)) == posesOf(*one, still));
+}
+
+TEST_P(FamilyLaws, AgreesWithItsPlainPath) {
+  const auto fast = posesOf(*model(), turning(2)),
+             plain = posesOf(*model(Execution::Reference), turning(2));
+  for (size_t b = 0; b < fast.size(); ++b)
+    EXPECT_LT((fast[b] - plain[b]).cwiseAbs().maxCoeff(), 1e-3F) << "metres";
+}
+
+TEST_P(FamilyLaws, ForksByCopyingItsState) {
+  const auto one = model();
+  const ModelInfo& info = one->info();
+  if (one->rollout() == nullptr) return;
+  const FrameGenerator& generator = *one->rollout();
+  RolloutState state = generator.start(2, {});
+  const Matrix control = Matrix::Constant(2, info.controlWindowWidth(), 0.03F),
+               latent = Matrix::Constant(2, info.latent.width, 0.5F);
+  for (int t = 0; t < 3; ++t) generator.sampleFrame(state, control, latent);
+  RolloutState fork = state;
+  const Matrix next = generator.sampleFrame(state, control, latent);
+  generator.sampleFrame(state, -control, latent);
+  EXPECT_TRUE(generator.sampleFrame(fork, control, latent) == next);
+}
+
+TEST_P(FamilyLaws, RefusesWhatDoesNotFit) {
+  const auto one = model();
+  const ModelInfo& info = one->info();
+  if (one->rollout() != nullptr) {
+    RolloutState state = one->rollout()->start(2, {});
+    const Matrix latent = Matrix::Zero(2, info.latent.width);
+    EXPECT_THROW(
+        one->rollout()->sampleFrame(state, Matrix::Zero(2, info.controlWindowWidth() + 1), latent),
+        InputError);
+    EXPECT_THROW(one->rollout()->sampleFrame(state, Matrix::Zero(2, info.controlWindowWidth()),
+                                             Matrix::Zero(2, info.latent.width + 1)),
+                 InputError);
+    EXPECT_THROW(one->rollout()->start(2, Matrix::Zero(2, info.context * info.poseDim + 1)),
+                 InputError);
+  }
+  Clip other = walks(1, 4.0, 5).front();
+  auto renamed = std::make_shared<Skeleton>(*other.skeleton);
+  renamed->names[3] = "Elsewhere";
+  other.skeleton = renamed;
+  EXPECT_THROW(requireSameJoints(info, other, "other.bvh"), InputError);
+}
+
+TEST_P(FamilyLaws, RefusesDamagedFilesAndNamesWhatIsWrong) {
+  const TensorFile& whole = madeBy(family()).file;
+  std::string name;
+  for (const auto& [key, tensor] : whole.tensors)
+    if (key.starts_with("weights/") && tensor.count() > 1) name = key;
+  ASSERT_FALSE(name.empty());
+  const std::string own = name.substr(std::string("weights/").size());
+  TensorFile missing = whole;
+  missing.tensors.erase(name);
+  EXPECT_NE(failureOf(missing).find(own), std::string::npos) << failureOf(missing);
+  TensorFile notFinite = whole;
+  auto values = notFinite.tensors.at(name).toFloats();
+  values.back() = std::nanf("");
+  notFinite.tensors[name] = Tensor::fromFloats(notFinite.tensors.at(name).shape, values.data());
+  EXPECT_NE(failureOf(notFinite).find(own), std::string::npos) << failureOf(notFinite);
+  TensorFile extra = whole;
+  extra.tensors["weights/elsewhere"] = whole.tensors.at(name);
+  EXPECT_NE(failureOf(extra).find("elsewhere"), std::string::npos) << failureOf(extra);
+  TensorFile unknown = whole;
+  unknown.metadata["config"]["elsewhere"] = 1;
+  EXPECT_NE(failureOf(unknown).find("elsewhere"), std::string::npos) << failureOf(unknown);
+}
+
+std::string failureOfTraining(const ModelFamily& family, const Json& config, const DataSet& set) {
+  const test::TempFolder folder;
+  TrainRequest request = requestOf(family, folder / "run");
+  request.config = config;
+  Progress progress;
+  try {
+    train(set, request, allFamilies(), progress);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST_P(FamilyLaws, RefusesConfigurationsAndDataThatAreWrong) {
+  const Json good = family().example;
+  Json misspelt = good;
+  misspelt["trainning"] = Json::object();
+  EXPECT_NE(failureOfTraining(family(), misspelt, data()).find("trainning"), std::string::npos);
+  Json unknown = good;
+  unknown["model"]["elsewhere"] = 1;
+  EXPECT_NE(failureOfTraining(family(), unknown, data()).find("elsewhere"), std::string::npos);
+  Json otherSize = good;
+  otherSize["model"]["pose_dim"] = data().poseDim() + 3;
+  EXPECT_NE(failureOfTraining(family(), otherSize, data()).find("pose_dim"), std::string::npos);
+  Json later = good;
+  later["version"] = kConfigVersion + 1;
+  EXPECT_NE(failureOfTraining(family(), later, data()).find("version"), std::string::npos);
+}
+
+TEST_P(FamilyLaws, NamesTheSequenceThatIsNotFinite) {
+  DataSet broken = data();
+  broken.train[1].pose(2, 4) = std::nanf("");
+  const std::string why = failureOfTraining(family(), family().example, broken);
+  EXPECT_NE(why.find(broken.train[1].name), std::string::npos) << why;
+}
+
+TEST_P(FamilyLaws, CanBeCancelled) {
+  const auto one = model();
+  std::stop_source stop;
+  stop.request_stop();
+  Progress cancelled({}, stop.get_token());
+  EXPECT_THROW(sampleSequences(*one, turning(2), cancelled), CancelledError);
+  const test::TempFolder folder;
+  EXPECT_THROW(train(data(), requestOf(family(), folder / "run"), allFamilies(), cancelled),
+               CancelledError);
+}
+
+TEST_P(FamilyLaws, ScoresOrSaysThatItCannot) {
+  const auto one = model();
+  const auto clips = walks(2, 3.0, 7);
+  Progress progress;
+  const auto scores = scoreClips(*one, clips, false, progress);
+  ASSERT_EQ(scores.size(), clips.size());
+  for (const ClipScore& score : scores) {
+    EXPECT_FALSE(score.tooShort());
+    EXPECT_EQ(score.loglikNats.empty(), one->density() == nullptr);
+    EXPECT_EQ(std::isfinite(score.meanNatsPerFrame()), one->density() != nullptr);
+  }
+  if (one->density() != nullptr) return;
+  EXPECT_THROW(requireDensity(*one), InputError);
+}
+
+TEST_P(FamilyLaws, LeavesWhatIsKnownAsItIs) {
+  const auto one = model();
+  if (one->completion() == nullptr) return;
+  const FeatureSequence f = extractFeatures(walks(1, 2.0, 3).front(), one->info().features);
+  CompletionRequest request{.poses = f.pose,
+                            .known = Matrix::Ones(f.pose.rows(), f.pose.cols()),
+                            .controls = f.control,
+                            .latents = Matrix::Zero(f.pose.rows(), one->info().latent.width)};
+  EXPECT_TRUE(one->completion()->complete(request, [] {}) == f.pose);
+  request.known.rightCols(6).setZero();
+  const Matrix filled = one->completion()->complete(request, [] {});
+  EXPECT_TRUE(filled.leftCols(f.pose.cols() - 6) == f.pose.leftCols(f.pose.cols() - 6));
+  EXPECT_TRUE(filled.allFinite());
+  // What is hidden is of no effect.
+  request.poses.rightCols(6).setConstant(1e3F);
+  EXPECT_TRUE(one->completion()->complete(request, [] {}) == filled);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, FamilyLaws, testing::ValuesIn(allFamilies()),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace marey

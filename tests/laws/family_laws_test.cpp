@@ -1,50 +1,24 @@
 // What holds of anything that makes motion: one suite over every family in the list and a toy that
 // the core does not know. Nothing here names a family.
-#include <array>
 #include <cmath>
-#include <filesystem>
-#include <map>
-#include <sstream>
 
 #include "../unit/base/support.h"
-#include "families.h"
-#include "toy_family.h"
+#include "law_models.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "model/build.h"
 #include "model/sampler.h"
 #include "model/scorer.h"
-#include "motion/walker.h"
 #include "nn/team.h"
 
 namespace marey {
 namespace {
 
-constexpr double kFps = 20.0;
-
-std::vector<ModelFamily> allFamilies() {
-  std::vector<ModelFamily> out(modelFamilies().begin(), modelFamilies().end());
-  out.push_back(test::toyFamily());
-  return out;
-}
-
-std::vector<Clip> walks(int count, double seconds, uint64_t seed) {
-  std::vector<Clip> out;
-  for (auto& walked : walkerDataSet(count, seconds, seed, kFps))
-    out.push_back(std::move(walked.clip));
-  return out;
-}
-
-const DataSet& data() {
-  static const DataSet set = [] {
-    Progress progress;
-    DataSet out = prepareDataSet(walks(4, 4.0, 2), walks(1, 4.0, 9), {}, progress);
-    out.hash = "laws";
-    return out;
-  }();
-  return set;
-}
+using test::law::allFamilies;
+using test::law::data;
+using test::law::Made;
+using test::law::madeBy;
+using test::law::requestOf;
+using test::law::walks;
 
 SampleRequest turning(int samples, int first = 0) {
   SampleRequest out{.path = {}, .samples = samples, .seed = 3, .warmUpS = 0.5};
@@ -59,50 +33,6 @@ std::vector<Matrix> posesOf(const MotionModel& model, const SampleRequest& reque
   for (auto& sequence : sampleSequences(model, request, progress))
     out.push_back(std::move(sequence.pose));
   return out;
-}
-
-/// The example of a family, trained for 20 steps where it is trained.
-struct Made {
-  TrainResult result;
-  TensorFile file;
-  std::vector<double> losses;  ///< of the log's rows
-};
-
-std::vector<double> lossesIn(const std::filesystem::path& log) {
-  std::vector<double> out;
-  std::istringstream in(readFile(log));
-  std::string line;
-  std::getline(in, line);
-  while (std::getline(in, line)) {
-    double step = 0, seconds = 0, rate = 0, loss = 0;
-    if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &step, &seconds, &rate, &loss) == 4)
-      out.push_back(loss);
-  }
-  return out;
-}
-
-TrainRequest requestOf(const ModelFamily& family, const std::filesystem::path& run) {
-  TrainRequest request;
-  request.config = family.example;
-  request.configOrigin = "example.json";
-  request.run = run;
-  if (family.makeTrainee) {
-    request.config["training"]["checkpoint_every"] = 10;
-    request.steps = 20;
-  }
-  return request;
-}
-
-const Made& madeBy(const ModelFamily& family) {
-  static std::map<std::string, Made> made;
-  if (const auto found = made.find(family.name); found != made.end()) return found->second;
-  const test::TempFolder folder;
-  Progress progress;
-  const TrainRequest request = requestOf(family, folder / "run");
-  Made out{.result = train(data(), request, allFamilies(), progress), .file = {}, .losses = {}};
-  out.file = readTensorFile(out.result.last);
-  if (family.makeTrainee) out.losses = lossesIn(request.run / "log.csv");
-  return made.emplace(family.name, std::move(out)).first->second;
 }
 
 class FamilyLaws : public testing::TestWithParam<ModelFamily> {

@@ -32,14 +32,15 @@ const std::map<std::string, Floor> kHouse{
     {"core/stats", {{"base", "motion"}, {"Boost"}}},
     {"core/nn", {{"base"}, {"torch"}}},
     {"core/model", {{"base", "motion", "nn"}, {"torch"}}},
+    {"core/task", {{"base", "motion", "model"}, {}}},
     {"core/experiment", {{"base", "motion", "model", "stats", "io"}, {}}},
     {"core/render",
      {{"base", "motion", "stats"},
       {"VTK::", "PkgConfig::CAIRO", "PkgConfig::PNG", "PkgConfig::EGL", "PkgConfig::LIBAV"}}},
     {"core/report", {{"base", "motion", "io", "stats", "model", "experiment", "render"}, {"ZLIB"}}},
     {"core/cli",
-     {{"base", "ranks", "motion", "io", "stats", "nn", "model", "experiment", "render", "report",
-       "plugins"},
+     {{"base", "ranks", "motion", "io", "stats", "nn", "model", "task", "experiment", "render",
+       "report", "plugins"},
       {"CLI11", "dl"}}},
     {"plugins", {{"base", "motion", "nn", "model", "plugins"}, {"torch"}}},
     {"gui/shell",
@@ -174,17 +175,22 @@ Names familyNames() {
   return out;
 }
 
-/// The first family that a line names, be it in another case or as part of an identifier; words of
-/// which a short name is only a part do not count ("kernnames" is no "rnn").
+/// The first family that a line names, be it in another case or as part of an identifier; of words
+/// that merely hold its letters ("internName") it is no part.
 std::string familyIn(const std::string& line, const Names& families) {
   std::string lower = line;
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  for (const std::string& family : families) {
-    const std::regex word("(^|[^a-z])" + family + "([^a-z]|$)|[a-z]?" + family +
-                          "(model|family|skeleton|config|net)");
-    if (std::regex_search(lower, word)) return family;
-  }
+  const auto letter = [&](size_t at) {
+    return at < lower.size() && std::isalpha(static_cast<unsigned char>(lower[at])) != 0;
+  };
+  for (const std::string& family : families)
+    for (size_t at = lower.find(family); at != std::string::npos; at = lower.find(family, at + 1)) {
+      const size_t end = at + family.size();
+      const bool begins = at == 0 || !letter(at - 1),
+                 ends = !letter(end) || std::isupper(static_cast<unsigned char>(line[end])) != 0;
+      if (begins && ends) return family;
+    }
   return {};
 }
 

@@ -1,0 +1,34 @@
+// Follow a path from the mean pose.
+#include "task/task_list.h"
+
+#include "base/error.h"
+
+namespace marey {
+namespace {
+
+std::string whyNot(const MotionModel& model) {
+  const ModelInfo& info = model.info();
+  if (!info.skeleton) return "one without a skeleton";
+  return model.rollout() || model.wholeClip() ? "" : "one that does not make motion along a path";
+}
+
+TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progress) {
+  SampleRequest request{.path = r.path,
+                        .samples = r.samples,
+                        .seed = r.seed,
+                        .temperature = r.temperature,
+                        .warmUpS = r.warmUpS};
+  if (request.path.empty() && r.clip) request.path = requestAlongClip(model, *r.clip, false).path;
+  return {.motions = sampleClips(model, request, progress), .reference = std::nullopt};
+}
+
+}  // namespace
+
+Task followTask() {
+  return {.name = "follow",
+          .title = "make motion that goes along a path",
+          .whyNot = whyNot,
+          .run = run};
+}
+
+}  // namespace marey

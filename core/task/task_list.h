@@ -1,0 +1,12 @@
+// The tasks, one source each. Internal to this folder.
+#pragma once
+
+#include "task/task.h"
+
+namespace marey {
+
+Task followTask();
+Task predictTask();
+Task completeTask();
+
+}  // namespace marey

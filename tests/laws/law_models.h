@@ -1,0 +1,30 @@
+// The families that laws are about, and a small model of each.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "model/build.h"
+
+namespace marey::test::law {
+
+/// Those of the list, and the toy.
+std::vector<ModelFamily> allFamilies();
+
+std::vector<Clip> walks(int count, double seconds, uint64_t seed);
+/// Of the walker.
+const DataSet& data();
+
+/// The example of a family, trained for 20 steps where it is trained.
+struct Made {
+  TrainResult result;
+  TensorFile file;
+  std::vector<double> losses;  ///< of the log's rows
+};
+TrainRequest requestOf(const ModelFamily& family, const std::filesystem::path& run);
+/// Made once.
+const Made& madeBy(const ModelFamily& family);
+
+}  // namespace marey::test::law

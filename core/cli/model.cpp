@@ -10,6 +10,7 @@
 #include "model/conformance.h"
 #include "model/likelihood.h"
 #include "model/model_card.h"
+#include "model/pose_units.h"
 #include "motion/roles.h"
 
 namespace marey::cli {
@@ -35,11 +36,12 @@ Json infoJson(const ModelInfo& info) {
   out["standardiser"] = !info.standardiser.empty();
   out["joints"] = info.skeleton ? info.skeleton->names : std::vector<std::string>{};
   out["fps"] = info.features.fps;
+  out["layout"] = info.features.layout;
   out["hash"] = info.hash;
   out["provenance"] = info.provenance;
   out["observation"] = info.observation.none() ? Json() : toJson(info.observation);
   out["floor_directions"] = finiteOrNull(floorDirectionsOf(info));
-  out["likelihood_unit"] = kLikelihoodUnit;
+  out["likelihood_unit"] = likelihoodUnit(info);
   out["linear_gaussian"] = info.yardstick != nullptr;
   return out;
 }

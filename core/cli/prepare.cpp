@@ -1,9 +1,11 @@
 // marey prepare: motion files -> data set.
+#include <algorithm>
 #include <set>
 
 #include "cli/command.h"
 #include "cli/readers.h"
 #include "model/data_set.h"
+#include "motion/representation/representation.h"
 
 namespace marey::cli {
 namespace {
@@ -36,12 +38,41 @@ double secondsOf(const std::vector<Clip>& clips) {
   return sum;
 }
 
+/// Clips whose rotations had to be fitted to their positions.
+struct Fitted {
+  int clips = 0;
+  double mostM = 0.0;  ///< how far a joint was moved by that
+
+  std::string text() const {
+    return clips == 0 ? std::string()
+                      : fmt::format(
+                            "\nrotations of {} clips are fitted to their positions (joints "
+                            "move by up to {:.1f} cm)",
+                            clips, 100.0 * mostM);
+  }
+};
+
+Fitted fittedOf(const DataSet& data) {
+  Fitted out;
+  for (const char* part : {"train", "test"})
+    for (const Json& source : data.provenance[part])
+      if (const double moved = source.value("rotations_fitted_within_m", 0.0); moved > 0.0) {
+        ++out.clips;
+        out.mostM = std::max(out.mostM, moved);
+      }
+  return out;
+}
+
 Json resultOf(const Options& o, const DataSet& data, const std::vector<Clip>& train,
               const std::vector<Clip>& test) {
+  const Fitted fitted = fittedOf(data);
   return {{"train_windows", windowCount(data.train, o.prepare)},
           {"test_windows", windowCount(data.test, o.prepare)},
           {"pose_dim", data.poseDim()},
           {"control_dim", data.controlDim()},
+          {"layout", data.options.features.layout},
+          {"rotations_fitted", fitted.clips},
+          {"rotations_fitted_within_m", fitted.mostM},
           {"seconds", secondsOf(train) + secondsOf(test)},
           {"train_clips", train.size()},
           {"test_clips", test.size()},
@@ -88,7 +119,8 @@ void run(const Options& o, const Context& context) {
                   o.out, trainClips.size(), secondsOf(trainClips) / 60,
                   windowCount(data.train, o.prepare), testClips.size(), secondsOf(testClips) / 60,
                   windowCount(data.test, o.prepare), data.poseDim(), data.controlDim(),
-                  o.prepare.features.fps));
+                  o.prepare.features.fps) +
+          fittedOf(data).text());
 }
 
 }  // namespace
@@ -117,8 +149,10 @@ void addPrepareCommand(CLI::App& app, Context& context) {
                     "Augment with left and right swapped (default on)");
   command->add_flag("--reverse,!--no-reverse", p.reverse,
                     "Augment with time reversed (default on)");
-  command->add_option("--layout", p.features.layout, "Feature layout: positions")
-      ->capture_default_str();
+  std::string layouts = "What a pose is made of";
+  for (const Representation& r : representations())
+    layouts += fmt::format("; {}: {}", r.name, r.description);
+  command->add_option("--layout", p.features.layout, layouts)->capture_default_str();
   command
       ->add_option("--root-sigma", p.features.rootSigmaS,
                    "Gaussian filter of the root's position, seconds")

@@ -12,6 +12,7 @@
 #include "cli/readers.h"
 #include "experiment/packed_motion.h"
 #include "model/likelihood.h"
+#include "model/pose_units.h"
 
 namespace marey::cli {
 namespace {
@@ -27,8 +28,7 @@ struct Options {
 constexpr size_t kTogether = 64;
 
 std::string unitOf(const ModelInfo& info, bool standardised) {
-  return standardised || info.standardiser.empty() ? "nats per frame, standardised poses"
-                                                   : kLikelihoodUnit;
+  return standardised || info.standardiser.empty() ? kStandardisedUnit : likelihoodUnit(info);
 }
 
 /// The scored clips.
@@ -45,22 +45,25 @@ class Scores {
       if (!score.tooShort()) clips.push_back(clipJson(score));
     const LikelihoodSummary s = summary();
     const double mean = s.nats;
-    Json out = {{"clips", std::move(clips)},
-                {"kind", nameOf(m_info.density)},
-                {"unit", m_unit},
-                {"frames", s.frames},
-                {"first_frame", s.firstFrame},
-                {"mean_nats_per_frame", finiteOrNull(mean)},
-                {"linear_gaussian_nats_per_frame", finiteOrNull(s.linearGaussian)},
-                {"observation_floor_mm",
-                 m_info.observation.none() ? Json() : Json(m_info.observation.floorMm())},
-                {"observation_draws", m_info.observation.draws},
-                {"pose_dim", m_info.poseDim},
-                {"floor_directions", finiteOrNull(s.floorDirections)},
-                {"effective_dimensions", finiteOrNull(s.effectiveDimensions)},
-                {"nats_per_effective_dimension", finiteOrNull(mean / s.effectiveDimensions)},
-                {"floor", floorText(m_info)}};
-    if (m_unit == kLikelihoodUnit) out["mean_nats_per_frame_cm"] = finiteOrNull(mean);
+    Json out = {
+        {"clips", std::move(clips)},
+        {"kind", nameOf(m_info.density)},
+        {"unit", m_unit},
+        {"frames", s.frames},
+        {"first_frame", s.firstFrame},
+        {"mean_nats_per_frame", finiteOrNull(mean)},
+        {"linear_gaussian_nats_per_frame", finiteOrNull(s.linearGaussian)},
+        {"observation_floor_mm",
+         m_info.observation.none() ? Json() : Json(m_info.observation.floorMm())},
+        {"observation_floor", m_info.observation.none() ? Json() : Json(floorSizeText(m_info))},
+        {"observation_draws", m_info.observation.draws},
+        {"pose_dim", m_info.poseDim},
+        {"floor_directions", finiteOrNull(s.floorDirections)},
+        {"effective_dimensions", finiteOrNull(s.effectiveDimensions)},
+        {"nats_per_effective_dimension", finiteOrNull(mean / s.effectiveDimensions)},
+        {"floor", floorText(m_info)}};
+    if (m_unit != kStandardisedUnit && allLengths(m_info))
+      out["mean_nats_per_frame_cm"] = finiteOrNull(mean);
     out["too_short"] = Json::array();
     for (const ShortClip& clip : s.tooShort)
       out["too_short"].push_back(

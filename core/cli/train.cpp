@@ -30,7 +30,7 @@ Json json(const TrainResult& r) {
   out["train_bits_per_frame"] = finiteOrNull(r.train);
   out["valid_bits_per_frame"] = finiteOrNull(r.valid);
   out["test_nats_per_frame"] = finiteOrNull(r.testNatsPerFrame);
-  out["test_unit"] = kLikelihoodUnit;
+  out["test_unit"] = r.testUnit;
   return out;
 }
 
@@ -40,7 +40,7 @@ std::string text(const TrainResult& r) {
     out += fmt::format("; {:.4g} {} in training", r.train, shownUnit(r.objective));
   if (std::isfinite(r.valid)) out += fmt::format(", {:.4g} at best in validation", r.valid);
   if (std::isfinite(r.testNatsPerFrame))
-    out += fmt::format("; held-out clips {:.1f} {}", r.testNatsPerFrame, kLikelihoodUnit);
+    out += fmt::format("; held-out clips {:.1f} {}", r.testNatsPerFrame, r.testUnit);
   return out + "\n" + r.best.string();
 }
 

@@ -94,7 +94,7 @@ std::vector<Vec3> LiveRollout::advance(const LiveCommand& command) {
   m_controls.insert(m_controls.end(), control.data(), control.data() + control.size());
   m_trajectory.push_back(m_root);
   ++m_frames;
-  return rebuildMotion(m_pose, control, m_root, info.skeleton, fps).positions;
+  return rebuildMotion(m_pose, control, m_root, info.skeleton, info.features).positions;
 }
 
 FeatureSequence LiveRollout::sequence() const {

@@ -9,6 +9,7 @@ void pack(const ClipScore& score, Packer& packer) {
   packer.add(score.name)
       .add(score.frames)
       .add(score.firstFrame)
+      .add(score.unit)
       .add(score.bitsPerDimension)
       .add(score.loglikNats)
       .add(score.latentNorm)
@@ -21,6 +22,7 @@ ClipScore unpackScore(Unpacker& bytes) {
   out.name = bytes.text();
   out.frames = bytes.number<int>();
   out.firstFrame = bytes.number<int>();
+  out.unit = bytes.text();
   out.bitsPerDimension = bytes.number<double>();
   out.loglikNats = bytes.list<double>();
   out.latentNorm = bytes.list<double>();

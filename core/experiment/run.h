@@ -34,7 +34,7 @@ struct SystemResult {
   std::vector<ClipScore> naturalScores, heldOutScores;  ///< of every clip, also too short ones
   std::map<std::string, PathSamples> paths;             ///< by the path's name
   double framesPerSecond = 0.0;                         ///< of sampling
-  /// Over the frames that every system scores; nats per frame, cm.
+  /// Over the frames that every system scores; each in its own unit.
   LikelihoodSummary naturalLikelihood, heldOutLikelihood;
 };
 

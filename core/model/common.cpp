@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "model/linear_gaussian.h"
 #include "model/model_family.h"
+#include "model/pose_units.h"
 
 namespace marey {
 namespace {
@@ -25,8 +26,10 @@ std::vector<float> loadVector(const TensorFile& file, const std::string& key, in
 }  // namespace
 
 void requireSameJoints(const ModelInfo& info, const Clip& clip, const std::string& path) {
-  if (3 * clip.jointCount() != info.poseDim)
-    throwInput({.path = path}, fmt::format("{} joints, as the model has", info.poseDim / 3), "{}",
+  const int joints = info.skeleton ? info.skeleton->jointCount()
+                                   : representationOf(info.features, path).joints(info.poseDim);
+  if (clip.jointCount() != joints)
+    throwInput({.path = path}, fmt::format("{} joints, as the model has", joints), "{}",
                clip.jointCount());
   if (!info.skeleton || !clip.skeleton) return;
   const auto &wanted = info.skeleton->names, &found = clip.skeleton->names;
@@ -34,6 +37,10 @@ void requireSameJoints(const ModelInfo& info, const Clip& clip, const std::strin
     if (wanted[j] != found[j])
       throwInput({.path = path, .item = fmt::format("joint {}", j)},
                  fmt::format("'{}', as the model has", wanted[j]), "'{}'", found[j]);
+}
+
+FeatureSequence featuresOf(const ModelInfo& info, const Clip& clip) {
+  return extractFeatures(clip, info.features, info.skeleton);
 }
 
 double Standardiser::logDetPerFrame() const {
@@ -112,7 +119,8 @@ Json toJson(const FeatureSpec& spec) {
 FeatureSpec featureSpecFromJson(const Json& value, const std::string& origin) {
   JsonReader reader(value, origin, "features.");
   FeatureSpec out;
-  out.layout = reader.required<std::string>("layout");
+  out.layout =
+      representationNamed(reader.required<std::string>("layout"), reader.place("layout")).name;
   out.fps = reader.required<double>("fps");
   out.rootSigmaS = reader.required<double>("root_sigma_s");
   out.facingSigmaS = reader.required<double>("facing_sigma_s");
@@ -128,10 +136,14 @@ Json toJson(const Skeleton& skeleton) {
   for (const auto& e : skeleton.endSites)
     ends.push_back(
         {{"parent", e.parent}, {"offset_m", {e.offset.x(), e.offset.y(), e.offset.z()}}});
-  return {{"names", skeleton.names},
-          {"parents", skeleton.parents},
-          {"offsets_m", offsets},
-          {"end_sites", ends}};
+  Json out = {{"names", skeleton.names},
+              {"parents", skeleton.parents},
+              {"offsets_m", offsets},
+              {"end_sites", ends}};
+  if (skeleton.rest.empty()) return out;
+  out["rest_wxyz"] = Json::array();
+  for (const auto& q : skeleton.rest) out["rest_wxyz"].push_back({q.w(), q.x(), q.y(), q.z()});
+  return out;
 }
 
 namespace {
@@ -162,6 +174,12 @@ std::shared_ptr<const Skeleton> skeletonFromJson(const Json& value, const std::s
   if (reader.has("end_sites"))
     for (const Json& end : reader.raw("end_sites"))
       out->endSites.push_back(endSiteFromJson(end, origin, out->jointCount()));
+  if (reader.has("rest_wxyz"))
+    for (const auto& q : reader.required<std::vector<std::vector<float>>>("rest_wxyz")) {
+      if (q.size() != 4)
+        throwInput(reader.place("rest_wxyz"), "4 values per joint", "{}", q.size());
+      out->rest.emplace_back(q[0], q[1], q[2], q[3]);
+    }
   validate(*out, origin);
   return out;
 }
@@ -197,9 +215,10 @@ ModelInfo loadCommon(const TensorFile& file, const std::string& origin) {
   if (reader.has("provenance")) out.provenance = reader.raw("provenance");
   if (reader.has("observation"))
     out.observation = observationNoiseFromJson(reader.raw("observation"), origin);
-  out.yardstick =
-      loadLinearGaussian(file, out.poseDim, out.controlDim, out.observation.floorM, origin);
   if (reader.has("skeleton")) out.skeleton = skeletonFromJson(reader.raw("skeleton"), origin);
+  requireFittingPoses(out, origin);
+  out.yardstick = loadLinearGaussian(file, out.poseDim, out.controlDim, out.observation.floorM,
+                                     floorScales(channelsOf(out)), origin);
   if (file.tensors.contains("standardiser/pose_mean")) {
     out.standardiser = {
         loadVector(file, "standardiser/pose_mean", out.poseDim, origin, false),

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "motion/representation/representation.h"
 
 namespace marey {
 namespace {
@@ -66,11 +67,12 @@ Moments momentsOf(const std::vector<FeatureSequence>& sequences, Member member) 
 }
 
 std::vector<FeatureSequence> extractAll(const std::vector<Clip>& clips, const FeatureSpec& spec,
+                                        const std::shared_ptr<const Skeleton>& skeleton,
                                         Progress& progress) {
   std::vector<FeatureSequence> out;
   for (const Clip& clip : clips) {
     progress.throwIfCancelled();
-    out.push_back(extractFeatures(clip, spec));
+    out.push_back(extractFeatures(clip, spec, skeleton));
     progress.report(static_cast<double>(out.size()) / static_cast<double>(clips.size()), clip.name);
   }
   return out;
@@ -78,28 +80,31 @@ std::vector<FeatureSequence> extractAll(const std::vector<Clip>& clips, const Fe
 
 void augment(std::vector<FeatureSequence>& sequences, const PrepareOptions& options,
              const Skeleton& skeleton) {
-  const auto mirror = rolesOf(skeleton).mirror;
   if (options.mirror)
     for (size_t i = 0, n = sequences.size(); i < n; ++i) {
-      sequences.push_back(mirrored(sequences[i], mirror));
+      sequences.push_back(mirrored(sequences[i], options.features, skeleton));
       sequences.back().name += "|mirror";
     }
   if (options.reverse)
     for (size_t i = 0, n = sequences.size(); i < n; ++i) {
-      sequences.push_back(timeReversed(sequences[i]));
+      sequences.push_back(timeReversed(sequences[i], options.features));
       sequences.back().name += "|reverse";
     }
 }
 
-Json sourcesOf(const std::vector<Clip>& clips) {
+/// Of clips and, as the first of `sequences`, what they became.
+Json sourcesOf(const std::vector<Clip>& clips, const std::vector<FeatureSequence>& sequences) {
   Json out = Json::array();
-  for (const Clip& clip : clips)
+  for (size_t i = 0; i < clips.size(); ++i) {
+    const Clip& clip = clips[i];
     out.push_back({{"name", clip.name},
                    {"format", clip.source.format},
                    {"unit", clip.source.unit},
                    {"up", clip.source.up},
                    {"fps", clip.source.fps},
                    {"frames", clip.frameCount()}});
+    if (sequences[i].fitM > 0.0) out.back()["rotations_fitted_within_m"] = sequences[i].fitM;
+  }
   return out;
 }
 
@@ -113,16 +118,18 @@ DataSet prepareDataSet(const std::vector<Clip>& train, const std::vector<Clip>& 
                options.hopS);
   checkSameSkeleton(train, *train.front().skeleton, train.front().name);
   checkSameSkeleton(test, *train.front().skeleton, train.front().name);
-  DataSet out{.options = options, .skeleton = train.front().skeleton};
+  const Representation& poses = representationOf(options.features, "data set");
+  DataSet out{.options = options, .skeleton = poses.skeletonOf(train, options.features)};
+  out.options.features.layout = poses.name;
   out.boneLengthsM = meanBoneLengths(train);
   Progress trainProgress = progress.part(0.0, 0.7), testProgress = progress.part(0.7, 0.8);
-  out.train = extractAll(train, options.features, trainProgress);
-  out.test = extractAll(test, options.features, testProgress);
+  out.train = extractAll(train, options.features, out.skeleton, trainProgress);
+  out.test = extractAll(test, options.features, out.skeleton, testProgress);
   augment(out.train, options, *out.skeleton);
   const Moments pose = momentsOf(out.train, &FeatureSequence::pose);
   const Moments control = momentsOf(out.train, &FeatureSequence::control);
   out.standardiser = {pose.mean, pose.std, control.mean, control.std};
-  out.provenance = {{"train", sourcesOf(train)}, {"test", sourcesOf(test)}};
+  out.provenance = {{"train", sourcesOf(train, out.train)}, {"test", sourcesOf(test, out.test)}};
   progress.report(1.0, "prepared");
   return out;
 }

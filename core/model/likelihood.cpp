@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "model/pose_units.h"
+
 namespace marey {
 namespace {
 
@@ -28,6 +30,8 @@ LikelihoodSummary summarise(const ModelInfo& info, std::span<const ClipScore> sc
                         .floorDirections = kNaN,
                         .effectiveDimensions = kNaN,
                         .natsPerEffectiveDimension = kNaN};
+  out.unit =
+      scores.empty() || scores.front().unit.empty() ? likelihoodUnit(info) : scores.front().unit;
   if (info.density == DensityKind::None) return out;
   double nats = 0.0, yardstick = 0.0;
   for (const ClipScore& score : scores) {
@@ -74,17 +78,16 @@ std::string floorText(const ModelInfo& info) {
     return "No floor: the density is of poses as they are, and where bones are constant its number "
            "hangs on how constant they are.";
   const double on = floorDirectionsOf(info);
-  // What a normal density as wide as the floor gives on average for noise of that width, cm.
+  std::string out = fmt::format("Observation floor {} ({} fixed draws).", floorSizeText(info),
+                                info.observation.draws);
+  if (!(std::isfinite(on) && on >= 0.5)) return out;
+  out += fmt::format(" {:.0f} of {} directions lie on it", on, info.poseDim);
+  // What a normal density as wide as the floor gives on average for noise of that width, cm. Where
+  // values have several units, directions are mixtures of them and have no common share.
   const double each =
       -std::log(100.0 * info.observation.floorM) - 0.5 * std::log(2.0 * std::numbers::pi) - 0.5;
-  std::string out = fmt::format("Observation floor {:g} mm ({} fixed draws).",
-                                info.observation.floorMm(), info.observation.draws);
-  if (std::isfinite(on) && on >= 0.5)
-    out += fmt::format(
-        " {:.0f} of {} directions lie on it and supply about {:.0f} nats per frame, which another "
-        "floor would change: the number hangs on the floor.",
-        on, info.poseDim, on * each);
-  return out;
+  if (allLengths(info)) out += fmt::format(" and supply about {:.0f} nats per frame", on * each);
+  return out + ", which another floor would change: the number hangs on the floor.";
 }
 
 }  // namespace marey

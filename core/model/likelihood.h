@@ -1,5 +1,5 @@
 // What is said of a model's log-likelihood of some clips: one set of definitions for the command
-// line, the report and the window. Unit: nats per frame, poses in centimetres.
+// line, the report and the window. The unit is that of the scores.
 #pragma once
 
 #include <span>
@@ -22,8 +22,9 @@ struct ShortClip {
 struct LikelihoodSummary {
   int clips = 0;
   long frames = 0;
-  int firstFrame = 0;  ///< scored frames start here in every clip
-  double nats = 0.0;   ///< mean over frames; NaN without frames, or where the model has none
+  std::string unit = {};  ///< of the scores; without any, the model's
+  int firstFrame = 0;     ///< scored frames start here in every clip
+  double nats = 0.0;      ///< mean over frames; NaN without frames, or where the model has none
   double linearGaussian = 0.0;  ///< of the same frames; NaN for models without a yardstick
   double floorDirections = 0.0, effectiveDimensions = 0.0;  ///< NaN without a floor
   double natsPerEffectiveDimension = 0.0;                   ///< NaN without a floor

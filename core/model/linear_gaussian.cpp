@@ -67,10 +67,16 @@ Moments momentsOf(const std::vector<FeatureSequence>& sequences, int order) {
   return {mean, covariance};
 }
 
+/// Floors [D] in units of floorM.
+VectorXd scalesOf(const std::vector<double>& scale, long width) {
+  if (scale.empty()) return VectorXd::Ones(width);
+  return Eigen::Map<const VectorXd>(scale.data(), width);
+}
+
 }  // namespace
 
 LinearGaussian fitLinearGaussian(const std::vector<FeatureSequence>& sequences, int order,
-                                 double floorM) {
+                                 double floorM, std::vector<double> floorScale) {
   const Moments m = momentsOf(sequences, order);
   const long d = sequences.front().pose.cols(), x = m.mean.size() - d;
   // What never changes in training keeps a scale that makes its weight vanish.
@@ -84,12 +90,15 @@ LinearGaussian fitLinearGaussian(const std::vector<FeatureSequence>& sequences, 
   const MatrixXd explained = w * cross;
   MatrixXd left = m.covariance.bottomRightCorner(d, d) - explained - explained.transpose() +
                   w * plain * w.transpose();
-  LinearGaussian out{.order = order, .floorM = floorM};
+  const VectorXd floors = scalesOf(floorScale, d);
+  LinearGaussian out{.order = order, .floorM = floorM, .floorScale = std::move(floorScale)};
   out.weight = w * scale.cwiseInverse().asDiagonal();
   out.bias = m.mean.tail(d) - out.weight * m.mean.head(x);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(left, Eigen::EigenvaluesOnly);
+  const MatrixXd inFloors =
+      floors.cwiseInverse().asDiagonal() * left * floors.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(inFloors, Eigen::EigenvaluesOnly);
   out.floorDirections = static_cast<int>((axes.eigenvalues().array() <= floorM * floorM).count());
-  left.diagonal().array() += floorM * floorM;
+  left.diagonal().array() += floorM * floorM * floors.array().square();
   out.factor = left.llt().matrixL();
   return out;
 }
@@ -99,7 +108,8 @@ std::vector<double> logDensity(const LinearGaussian& model, const FeatureSequenc
   const long d = sequence.pose.cols();
   const auto lower = model.factor.triangularView<Eigen::Lower>();
   // The mean of a quadratic form over noise: what it is without, and the trace.
-  const double trace = lower.solve(MatrixXd::Identity(d, d)).squaredNorm();
+  const MatrixXd floors(scalesOf(model.floorScale, d).asDiagonal());
+  const double trace = lower.solve(floors).squaredNorm();
   const double constant = -0.5 * static_cast<double>(d) * std::log(2.0 * std::numbers::pi) -
                           model.factor.diagonal().array().log().sum() -
                           0.5 * model.floorM * model.floorM * trace;
@@ -116,7 +126,7 @@ std::vector<double> logDensity(const LinearGaussian& model, const FeatureSequenc
 
 std::vector<int> leastExplainedJoints(const LinearGaussian& model, const FeatureSequence& sequence,
                                       int first) {
-  const long d = sequence.pose.cols(), joints = d / 3;
+  const long d = sequence.pose.cols(), joints = d / 3;  // positions alone
   const MatrixXd inverse =
       model.factor.triangularView<Eigen::Lower>().solve(MatrixXd::Identity(d, d));
   const MatrixXd precision = inverse.transpose() * inverse;
@@ -158,6 +168,7 @@ void store(const LinearGaussian& model, TensorFile& file) {
 
 std::shared_ptr<const LinearGaussian> loadLinearGaussian(const TensorFile& file, int poseDim,
                                                          int controlDim, double floorM,
+                                                         std::vector<double> floorScale,
                                                          const std::string& origin) {
   const auto stored = file.tensors.find(kWeight);
   if (stored == file.tensors.end()) return nullptr;
@@ -180,6 +191,7 @@ std::shared_ptr<const LinearGaussian> loadLinearGaussian(const TensorFile& file,
   auto out = std::make_shared<LinearGaussian>();
   out->order = static_cast<int>(poses / poseDim);
   out->floorM = floorM;
+  out->floorScale = std::move(floorScale);
   out->weight = matrix(kWeight, poseDim, shape[1]);
   out->bias = matrix(kBias, poseDim, 1);
   out->factor = matrix(kFactor, poseDim, poseDim);

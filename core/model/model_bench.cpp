@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "model/trainable.h"
 #include "model/weights.h"
+#include "motion/representation/representation.h"
 #include "motion/walker.h"
 #include "nn/machine_limits.h"
 
@@ -147,11 +148,13 @@ struct Clips {
 TensorFile randomModel(const Json& config, const std::string& origin, const ModelFamily& family,
                        uint64_t seed) {
   ModelInfo info = family.describe(config, origin);
+  const Representation& poses = representationOf(info.features, origin);
   const TraineeData data{
       info.poseDim,
       info.controlDim,
-      info.poseDim == 3 * walkerSkeleton()->jointCount() ? walkerSkeleton() : nullptr,
-      {}};
+      info.poseDim == poses.width(*walkerSkeleton()) ? walkerSkeleton() : nullptr,
+      {},
+      info.features};
   if (!family.makeTrainee)
     throw InputError({.path = origin, .item = "key 'family'"}, "a family that is trained",
                      "'" + family.name + "'");

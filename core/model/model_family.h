@@ -15,6 +15,7 @@ struct TraineeData {
   int poseDim = 0, controlDim = 0;
   std::shared_ptr<const Skeleton> skeleton;
   Standardiser standardiser;
+  FeatureSpec features;
 };
 
 /// A freshly made network, ready to be trained.

@@ -24,7 +24,8 @@ struct Standardiser {
   std::vector<float> controlMean, controlStd;  ///< [C]
 
   bool empty() const { return poseMean.empty(); }
-  /// Added to a log-density of standardised poses it gives that of poses in metres (per frame).
+  /// Added to a log-density of standardised poses it gives that of poses in their units (per
+  /// frame).
   double logDetPerFrame() const;
 };
 
@@ -196,6 +197,9 @@ const DensityEstimator& requireDensity(const MotionModel& model);
 /// Throws InputError naming `path` unless the clip has the model's joints in the model's order. A
 /// model without a skeleton (an imported one) only says how many it has.
 void requireSameJoints(const ModelInfo& info, const Clip& clip, const std::string& path);
+
+/// A clip as the model sees it: its rate, its representation, its rest pose. Throws InputError.
+FeatureSequence featuresOf(const ModelInfo& info, const Clip& clip);
 
 /// Standardiser, features and skeleton inside stored models and data sets.
 void storeCommon(const ModelInfo& info, TensorFile& file);

@@ -13,8 +13,10 @@
 namespace marey {
 
 struct ObservationNoise {
-  double floorM = 0.0;  ///< standard deviation of every coordinate of every joint; 0: none
-  int draws = 0;        ///< over which a score is the mean; even; 0: poses are scored as they are
+  /// Standard deviation of every coordinate of every joint; of angles what floorScales
+  /// (model/pose_units.h) makes of it; 0: none.
+  double floorM = 0.0;
+  int draws = 0;  ///< over which a score is the mean; even; 0: poses are scored as they are
 
   bool none() const { return draws == 0; }
   double floorMm() const { return 1e3 * floorM; }
@@ -28,8 +30,9 @@ Json toJson(const ObservationNoise& noise);
 /// Throws InputError naming `origin`.
 ObservationNoise observationNoiseFromJson(const Json& value, const std::string& origin);
 
-/// Noise [rows, width] in metres of draw `draw` on frames first .. first + rows - 1 of any clip.
-/// Draws 2k and 2k + 1 are opposite, so that what is odd in the noise cancels.
+/// Noise [rows, width] of size floorM (of other than lengths to be scaled by floorScales) of draw
+/// `draw` on frames first .. first + rows - 1 of any clip. Draws 2k and 2k + 1 are opposite, so
+/// that what is odd in the noise cancels.
 Matrix observationNoise(const ObservationNoise& noise, int draw, long first, long rows, long width);
 
 }  // namespace marey

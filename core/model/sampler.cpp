@@ -228,8 +228,8 @@ Clip sampledClip(const MotionModel& model, const FeatureSequence& sequence) {
   const ModelInfo& info = model.info();
   if (!info.skeleton)
     throw InputError({.path = info.variant}, "a model with a skeleton", "one imported without it");
-  Clip clip = rebuildMotion(sequence.pose, sequence.control, sequence.start, info.skeleton,
-                            info.features.fps);
+  Clip clip =
+      rebuildMotion(sequence.pose, sequence.control, sequence.start, info.skeleton, info.features);
   clip.name = sequence.name;
   clip.source.format = "model";
   clip.source.fps = info.features.fps;
@@ -263,7 +263,7 @@ SampleRequest requestAlongClip(const MotionModel& model, const Clip& clip, bool 
     return out;
   }
   requireSameJoints(info, clip, place.path);
-  const FeatureSequence features = extractFeatures(clip, info.features);
+  const FeatureSequence features = featuresOf(info, clip);
   requireLength(features.frameCount(), info.context);
   const auto trajectory = trajectoryFromControl(features.control, features.start);
   out.path.assign(trajectory.begin() + info.context, trajectory.end());

@@ -18,13 +18,13 @@ struct SampleRequest {
   double temperature = 1.0;
   double warmUpS = 1.0;  ///< generated before the first kept frame and dropped
   int firstSample = 0;   ///< number of the first sample: latents depend on it, not on the batch
-  /// Poses to start from, [context, D] in metres (the frames before the first kept one);
+  /// Poses to start from, [context, D] (the frames before the first kept one);
   /// empty: the mean pose and a warm-up.
   Matrix startPoses;
   Matrix startControl;  ///< [context, C], with startPoses
 };
 
-/// Called with each frame's poses [samples, D] in metres of one request.
+/// Called with each frame's poses [samples, D] of one request.
 using FrameSink = std::function<void(size_t request, int frame, const Matrix& poses)>;
 
 /// Latent of one sample at one frame: the same bits for any batch size and thread count.

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "model/linear_gaussian.h"
+#include "model/pose_units.h"
 #include "motion/main_body.h"
 
 namespace marey {
@@ -25,11 +26,6 @@ Matrix withLookahead(const Matrix& control, int lookahead) {
 }
 
 }  // namespace
-
-double toCentimetresPerFrame(const Standardiser& standardiser) {
-  return standardiser.logDetPerFrame() -
-         static_cast<double>(standardiser.poseStd.size()) * std::log(100.0);
-}
 
 int fewestFrames(const ModelInfo& info) {
   return info.context + 1;
@@ -67,7 +63,14 @@ struct Draw {
   int index = 0;
   bool noisy = false;
   double weight = 1.0;
+  Eigen::VectorXf scale;  ///< floorScales
 };
+
+Eigen::VectorXf floatScales(const ModelInfo& info) {
+  const auto scales = floorScales(channelsOf(info));
+  return Eigen::Map<const Eigen::VectorXd>(scales.data(), static_cast<long>(scales.size()))
+      .cast<float>();
+}
 
 /// Adds a piece's share to the mean over the draws. Frames are those of the clip.
 void add(const SequenceScore& piece, long first, double weight, ClipScore& out) {
@@ -98,7 +101,8 @@ void scoreGroup(const MotionModel& model, const std::vector<Lane>& lanes, const 
       poses.emplace_back(lane.features->pose.middleRows(first, count));
       if (draw.noisy)
         targets.emplace_back(poses.back() + observationNoise(info.observation, draw.index, first,
-                                                             count, info.poseDim));
+                                                             count, info.poseDim) *
+                                                draw.scale.asDiagonal());
       controls.emplace_back(
           lane.control.middleRows(first - info.context, info.context + count + info.lookahead));
     }
@@ -119,9 +123,10 @@ void scoreDraws(const MotionModel& model, const std::vector<Lane>& lanes, Progre
                 std::vector<ClipScore>& out) {
   const ObservationNoise& noise = model.info().observation;
   const int draws = std::max(1, noise.draws);
+  const Eigen::VectorXf scale = floatScales(model.info());
   for (int i = 0; i < draws; ++i) {
     Progress part = progress.part(static_cast<double>(i) / draws, (i + 1.0) / draws);
-    scoreGroup(model, lanes, {i, !noise.none(), 1.0 / draws}, part, out);
+    scoreGroup(model, lanes, {i, !noise.none(), 1.0 / draws, scale}, part, out);
   }
 }
 
@@ -135,17 +140,27 @@ ClipScore begun(const ModelInfo& info, const FeatureSequence& features) {
   return out;
 }
 
+/// Three coordinates of every joint, in order.
+bool arePositions(const std::vector<Channel>& channels) {
+  for (size_t i = 0; i < channels.size(); ++i)
+    if (channels[i].kind != ChannelKind::Position || channels[i].joint != static_cast<int>(i / 3))
+      return false;
+  return true;
+}
+
 void finish(const ModelInfo& info, const FeatureSequence& features, bool standardised,
             ClipScore& out) {
-  const double logDet = toCentimetresPerFrame(info.standardiser);
+  const auto channels = channelsOf(info);
+  const double logDet = toShownPerFrame(info.standardiser, channels);
+  out.unit = standardised || info.standardiser.empty() ? kStandardisedUnit : likelihoodUnit(info);
   for (double& nats : out.loglikNats) nats += standardised ? 0.0 : logDet;
   out.bitsPerDimension = -out.meanNatsPerFrame() / (std::numbers::ln2 * info.poseDim);
   if (!info.yardstick || out.loglikNats.empty()) return;
   out.linearGaussianNats = logDensity(*info.yardstick, features, out.firstFrame);
-  // Of poses in metres.
+  // Of poses in their own units.
   const double shift = (standardised ? 0.0 : logDet) - info.standardiser.logDetPerFrame();
   for (double& nats : out.linearGaussianNats) nats += shift;
-  if (info.skeleton && 3 * info.skeleton->jointCount() == info.poseDim)
+  if (info.skeleton && arePositions(channels))
     out.oddestJoint = leastExplainedJoints(*info.yardstick, features, out.firstFrame);
 }
 
@@ -193,7 +208,7 @@ std::vector<ClipScore> scoreClips(const MotionModel& model, std::span<const Clip
     progress.throwIfCancelled();
     const std::string& path = clip.source.path.empty() ? clip.name : clip.source.path;
     requireSameJoints(model.info(), clip, path);
-    sequences.push_back(extractFeatures(clip, model.info().features));
+    sequences.push_back(featuresOf(model.info(), clip));
     sequences.back().name = path;
   }
   auto out = scoreSequences(model, sequences, standardised, progress);
@@ -213,7 +228,7 @@ ClipScore scoreClip(const MotionModel& model, const Clip& clip, bool standardise
   Progress progress;
   const std::string& path = clip.source.path.empty() ? clip.name : clip.source.path;
   requireSameJoints(model.info(), clip, path);
-  FeatureSequence features = extractFeatures(clip, model.info().features);
+  FeatureSequence features = featuresOf(model.info(), clip);
   features.name = path;
   ClipScore out = scoreSequence(model, features, standardised);
   out.name = clip.name;

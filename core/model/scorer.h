@@ -10,18 +10,21 @@
 
 namespace marey {
 
+/// Unit of a log-density of standardised poses: where one asks for it, and of models without a
+/// standardiser.
+inline constexpr const char* kStandardisedUnit = "nats per frame, standardised poses";
+
 struct ClipScore {
   std::string name;
-  int frames = 0;      ///< of the clip, at the model's rate
-  int firstFrame = 0;  ///< first scored frame, at the model's rate
-  /// Per frame: of poses in centimetres, unless asked for the standardised density or the model
-  /// has no standardiser.
-  std::vector<double> loglikNats;
+  int frames = 0;                  ///< of the clip, at the model's rate
+  int firstFrame = 0;              ///< first scored frame, at the model's rate
+  std::string unit;                ///< of the numbers: likelihoodUnit, or kStandardisedUnit
+  std::vector<double> loglikNats;  ///< per frame, in `unit`
   std::vector<double> latentNorm;  ///< |z| per frame
   /// The yardstick's of the same frames, in the same unit; empty for models without one.
   std::vector<double> linearGaussianNats;
   /// Of the same frames: the joint that the others explain least, by the yardstick; empty without
-  /// one, or where poses are no joints.
+  /// one, or where the values of a pose are not the positions of joints.
   std::vector<int> oddestJoint;
   double bitsPerDimension = 0.0;    ///< mean, -log2 p / D
   double meanNatsPerFrame() const;  ///< NaN where nothing was scored
@@ -29,13 +32,6 @@ struct ClipScore {
   /// the model has no likelihood (ModelInfo::density).
   bool tooShort() const { return frames <= firstFrame; }
 };
-
-/// Unit of every likelihood that is shown, unless said otherwise.
-inline constexpr const char* kLikelihoodUnit = "nats per frame, cm";
-
-/// Added to a log-density of standardised poses it gives that of poses in centimetres, per frame; 0
-/// for models without a standardiser.
-double toCentimetresPerFrame(const Standardiser& standardiser);
 
 /// Frames that a clip needs to have one that can be scored: the one rule on clips that are too
 /// short. Scoring several leaves those empty (ClipScore::tooShort), for the caller to count and

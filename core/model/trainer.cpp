@@ -10,8 +10,8 @@
 #include "model/evaluation.h"
 #include "model/kept_checkpoints.h"
 #include "model/optimiser.h"
+#include "model/pose_units.h"
 #include "model/run_files.h"
-#include "model/scorer.h"
 #include "model/training_data.h"
 #include "model/training_state.h"
 #include "model/weights.h"
@@ -80,6 +80,17 @@ struct Judged {
   double valid = std::nan(""), test = std::nan("");
 };
 
+/// Of a model whose poses are those of the data.
+TensorFile initialWeights(const fs::path& path, const FeatureSpec& features) {
+  TensorFile out = readTensorFile(path);
+  if (!out.metadata.contains("features")) return out;
+  const auto found = featureSpecFromJson(out.metadata["features"], path.string());
+  if (found.layout != features.layout)
+    throw InputError({.path = path.string(), .item = "feature layout"},
+                     "'" + features.layout + "', as the data set has", "'" + found.layout + "'");
+  return out;
+}
+
 /// One training run: what it is given and what it carries.
 class Run {
  public:
@@ -92,9 +103,10 @@ class Run {
         m_device(deviceOf(request)),
         m_group(nn::joinProcesses(request.process,
                                   nn::meetingPoint(fs::weakly_canonical(request.run).string()))) {
-    m_trainee = m_family.makeTrainee(
-        request.config.at("model"), request.configOrigin,
-        {data.poseDim(), data.controlDim(), data.skeleton, data.standardiser}, request.seed);
+    m_trainee = m_family.makeTrainee(request.config.at("model"), request.configOrigin,
+                                     {data.poseDim(), data.controlDim(), data.skeleton,
+                                      data.standardiser, data.options.features},
+                                     request.seed);
     m_objective = m_trainee.net->objective();
     m_training.emplace(
         trainingDataOf(data, m_config, *m_trainee.net, m_device, request.configOrigin));
@@ -125,6 +137,7 @@ class Run {
             .train = m_lastTrain,
             .valid = m_state.bestValid,
             .testNatsPerFrame = m_lastTestNats,
+            .testUnit = likelihoodUnit(m_data.options.features),
             .best = m_request.run / "best.marey",
             .last = m_request.run / "last.marey"};
   }
@@ -166,7 +179,8 @@ class Run {
     if (m_request.init.empty()) {
       m_facts = net.initialise(m_training->framesFor(net));
     } else {
-      loadWeights(net, readTensorFile(m_request.init), m_request.init.string());
+      loadWeights(net, initialWeights(m_request.init, m_data.options.features),
+                  m_request.init.string());
       m_facts = {{"initial_weights", m_request.init.filename().string()}};
     }
     // Another kind of processor may have rounded its start otherwise.
@@ -228,10 +242,12 @@ class Run {
     return meanLoss(*m_trainee.net, *batches, m_training->noise, *m_group);
   }
 
-  /// Of a loss in nats per frame of standardised poses: of poses in centimetres.
+  /// Of a loss in nats per frame of standardised poses: in likelihoodUnit.
   double natsPerFrame(double loss) const {
     if (!m_objective.likelihood) return std::nan("");
-    return -loss + toCentimetresPerFrame(m_data.standardiser);
+    const FeatureSpec& features = m_data.options.features;
+    return -loss + toShownPerFrame(m_data.standardiser,
+                                   channelsOf(features, m_data.skeleton.get(), m_data.poseDim()));
   }
 
   double shown(double loss) const { return shownLoss(m_objective, loss); }
@@ -325,7 +341,7 @@ class Run {
     add("valid", judged.valid);
     add("test", judged.test);
     if (likelihood)
-      provenance["likelihood_unit"] = kLikelihoodUnit;
+      provenance["likelihood_unit"] = likelihoodUnit(m_data.options.features);
     else
       provenance["loss_unit"] = m_objective.unit;
   }

@@ -38,8 +38,9 @@ struct TrainResult {
   /// Losses in shownUnit(objective); NaN where there is none.
   double train = std::numeric_limits<double>::quiet_NaN();  ///< mean since the last checkpoint
   double valid = std::numeric_limits<double>::quiet_NaN();  ///< of the best checkpoint
-  /// Held-out clips at the end, poses in centimetres; NaN unless the objective is a likelihood.
+  /// Held-out clips at the end, in testUnit; NaN unless the objective is a likelihood.
   double testNatsPerFrame = std::numeric_limits<double>::quiet_NaN();
+  std::string testUnit = {};  ///< likelihoodUnit
   std::filesystem::path best, last;
 };
 

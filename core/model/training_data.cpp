@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "model/pose_units.h"
 
 namespace marey {
 namespace {
@@ -43,15 +44,17 @@ TrainingData trainingDataOf(const DataSet& data, const TrainingConfig& config,
     return Batches(sequences, data.standardiser, kEvaluationFrames + context, kEvaluationFrames,
                    device);
   };
+  const auto channels = channelsOf(data.options.features, data.skeleton.get(), data.poseDim());
   TrainingData out{.train = Batches(train, data.standardiser, window, hop, device),
                    .valid = evaluated(valid),
                    .test = evaluated(data.test),
-                   .noise = TrainingNoise(net, data.standardiser, device),
+                   .noise = TrainingNoise(net, data.standardiser, floorScales(channels), device),
                    .pace = trainingPace(train, fps),
                    .yardstick = nullptr};
   if (!out.noise.none())
-    out.yardstick = std::make_shared<const LinearGaussian>(fitLinearGaussian(
-        train, std::min(kYardstickOrder, context), out.noise.observation().floorM));
+    out.yardstick = std::make_shared<const LinearGaussian>(
+        fitLinearGaussian(train, std::min(kYardstickOrder, context), out.noise.observation().floorM,
+                          out.noise.floorScale()));
   return out;
 }
 

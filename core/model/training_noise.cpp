@@ -17,10 +17,13 @@ torch::Tensor TrainableModel::poseDerivatives(const TrainingFrames& /*frames*/, 
 }
 
 TrainingNoise::TrainingNoise(const TrainableModel& net, const Standardiser& standardiser,
-                             torch::Device device)
-    : m_floorM(net.observationFloorM()) {
+                             std::vector<double> floorScale, torch::Device device)
+    : m_floorM(net.observationFloorM()), m_scale(std::move(floorScale)) {
   if (m_floorM <= 0.0) return;
-  m_poseStd = torch::tensor(standardiser.poseStd).to(device);
+  std::vector<float> scaled = standardiser.poseStd;
+  for (size_t i = 0; i < scaled.size(); ++i)
+    scaled[i] = static_cast<float>(static_cast<double>(scaled[i]) / m_scale[i]);
+  m_poseStd = torch::tensor(scaled).to(device);
   m_deviation = m_floorM / m_poseStd;
 }
 

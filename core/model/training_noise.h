@@ -9,7 +9,8 @@ namespace marey {
 class TrainingNoise {
  public:
   /// Undefined noise where the model has no floor.
-  TrainingNoise(const TrainableModel& net, const Standardiser& standardiser, torch::Device device);
+  TrainingNoise(const TrainableModel& net, const Standardiser& standardiser,
+                std::vector<double> floorScale, torch::Device device);
 
   bool none() const { return !m_deviation.defined(); }
   /// Standard deviations [D], standardised; undefined: none.
@@ -17,6 +18,7 @@ class TrainingNoise {
   /// Of a batch, drawn on the CPU, so that a device changes no batch; undefined: none.
   torch::Tensor draw(const TrainingBatch& batch, at::Generator& generator) const;
   ObservationNoise observation() const;
+  const std::vector<double>& floorScale() const { return m_scale; }
   /// Directions of pose space in which a model is at most sqrt(2) floors wide, so that at least
   /// half of its variance is the floor: singular values of its pose by its latent, in the mean over
   /// some of the frames. NaN without a floor.
@@ -24,7 +26,9 @@ class TrainingNoise {
 
  private:
   double m_floorM;
-  torch::Tensor m_deviation, m_poseStd;
+  std::vector<double> m_scale;  ///< floorScales
+  torch::Tensor m_deviation;
+  torch::Tensor m_poseStd;  ///< in units whose floor is floorM
 };
 
 }  // namespace marey

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "base/error.h"
+#include "motion/representation/representation.h"
 #include "motion/resample.h"
 
 namespace marey {
@@ -86,18 +87,6 @@ std::vector<double> headingOfMovement(const std::vector<double>& x, const std::v
   return unwrapped(std::move(out));
 }
 
-Vec3 toRootFrame(const Vec3& p, const RootFrame& root) {
-  const double c = std::cos(root.heading), s = std::sin(root.heading);
-  const double dx = p.x() - root.x, dz = p.z() - root.z;
-  return {static_cast<float>(c * dx - s * dz), p.y(), static_cast<float>(s * dx + c * dz)};
-}
-
-Vec3 fromRootFrame(const Vec3& p, const RootFrame& root) {
-  const double c = std::cos(root.heading), s = std::sin(root.heading);
-  return {static_cast<float>(root.x + c * p.x() + s * p.z()), p.y(),
-          static_cast<float>(root.z - s * p.x() + c * p.z())};
-}
-
 }  // namespace
 
 std::vector<RootFrame> rootTrajectory(const Clip& clip, const FeatureSpec& spec) {
@@ -153,58 +142,47 @@ std::vector<RootFrame> trajectoryFromControl(const Matrix& control, const RootFr
   return out;
 }
 
-FeatureSequence extractFeatures(const Clip& source, const FeatureSpec& spec) {
+FeatureSequence extractFeatures(const Clip& source, const FeatureSpec& spec,
+                                std::shared_ptr<const Skeleton> skeleton) {
   validate(source);
-  if (spec.layout != "positions")
-    throw InputError({.path = source.name}, "feature layout 'positions'", "'" + spec.layout + "'");
-  const Clip clip = resampled(source, spec.fps);
-  const auto trajectory = rootTrajectory(clip, spec);
-  FeatureSequence out{.name = clip.name,
-                      .pose = Matrix(clip.frameCount(), 3 * clip.jointCount()),
-                      .control = controlFromTrajectory(trajectory),
-                      .start = trajectory.front()};
-  for (int t = 0; t < clip.frameCount(); ++t)
-    for (int j = 0; j < clip.jointCount(); ++j)
-      out.pose.block<1, 3>(t, 3 * j) = toRootFrame(clip.at(t, j), trajectory[t]).transpose();
-  return out;
+  const Representation& poses = representationOf(spec, source.name);
+  if (!skeleton) skeleton = source.skeleton;
+  ReadyClip ready = poses.ready(resampled(source, spec.fps), *skeleton);
+  const auto trajectory = rootTrajectory(ready.clip, spec);
+  return {.name = ready.clip.name,
+          .pose = poses.encode(ready.clip, *skeleton, trajectory),
+          .control = controlFromTrajectory(trajectory),
+          .start = trajectory.front(),
+          .fitM = ready.fitM};
 }
 
 Clip rebuildMotion(const Matrix& pose, const Matrix& control, const RootFrame& start,
-                   std::shared_ptr<const Skeleton> skeleton, double fps) {
-  const int joints = skeleton->jointCount();
-  if (pose.cols() != 3 * joints || control.cols() != 3 || control.rows() != pose.rows())
+                   std::shared_ptr<const Skeleton> skeleton, const FeatureSpec& spec) {
+  const Representation& poses = representationOf(spec, "features");
+  const int width = poses.width(*skeleton);
+  if (pose.cols() != width || control.cols() != 3 || control.rows() != pose.rows())
     throwInput({.path = "features"},
-               fmt::format("poses of {} values and 3 controls per frame", 3 * joints),
+               fmt::format("poses of {} values and 3 controls per frame", width),
                "{} x {} poses, {} x {} controls", pose.rows(), pose.cols(), control.rows(),
                control.cols());
-  const auto trajectory = trajectoryFromControl(control, start);
-  Clip out;
-  out.skeleton = std::move(skeleton);
-  out.fps = fps;
-  out.positions.resize(static_cast<size_t>(pose.rows()) * joints);
-  for (long t = 0; t < pose.rows(); ++t)
-    for (int j = 0; j < joints; ++j)
-      out.frame(static_cast<int>(t))[j] =
-          fromRootFrame(pose.block<1, 3>(t, 3 * j).transpose(), trajectory[static_cast<size_t>(t)]);
+  Clip out = poses.decode(pose, trajectoryFromControl(control, start), std::move(skeleton));
+  out.fps = spec.fps;
   return out;
 }
 
-FeatureSequence mirrored(const FeatureSequence& in, const std::vector<int>& mirror) {
+FeatureSequence mirrored(const FeatureSequence& in, const FeatureSpec& spec,
+                         const Skeleton& skeleton) {
   FeatureSequence out = in;
-  for (size_t j = 0; j < mirror.size(); ++j) {
-    const long to = 3 * static_cast<long>(j), from = 3L * mirror[j];
-    out.pose.middleCols<3>(to) = in.pose.middleCols<3>(from);
-    out.pose.col(to) *= -1.f;
-  }
+  out.pose = representationOf(spec, in.name).mirror(in.pose, skeleton);
   out.control.col(0) *= -1.f;
   out.control.col(2) *= -1.f;
   out.start = {-in.start.x, in.start.z, -in.start.heading};
   return out;
 }
 
-FeatureSequence timeReversed(const FeatureSequence& in) {
+FeatureSequence timeReversed(const FeatureSequence& in, const FeatureSpec& spec) {
   FeatureSequence out = in;
-  out.pose = in.pose.colwise().reverse();
+  out.pose = representationOf(spec, in.name).reverse(in.pose);
   const auto trajectory = trajectoryFromControl(in.control, in.start);
   // Backwards, each step is undone; it is expressed in the frame it now starts from.
   std::vector<RootFrame> backwards(trajectory.rbegin(), trajectory.rend());

@@ -1,5 +1,6 @@
-// The pose and control features of Henter et al. 2020 (as in Habibie et al. 2017): joint positions
-// in a floor-level frame that follows the character, and that frame's motion as control.
+// The pose and control features of Henter et al. 2020 (as in Habibie et al. 2017): poses in a
+// floor-level frame that follows the character, and that frame's motion as control. What a pose is
+// made of is its representation's (motion/representation/representation.h).
 #pragma once
 
 #include <memory>
@@ -18,7 +19,7 @@ using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 
 /// How clips become features. Stored in every data set and model.
 struct FeatureSpec {
-  std::string layout = "positions";  ///< root-frame joint positions, joints x 3
+  std::string layout = "root-positions";  ///< name of the representation
   double fps = 20.0;
   double rootSigmaS = 0.25;    ///< Gaussian filter of the root's floor position, seconds
   double facingSigmaS = 0.25;  ///< Gaussian filter of the facing direction, seconds
@@ -33,7 +34,7 @@ struct RootFrame {
 };
 
 /// One clip as a model sees it.
-/// pose [T, joints*3]: joint positions in the root frame, metres, y = true height.
+/// pose [T, D]: in the root frame, as the representation has it.
 /// control [T, 3]: the root's sideways (+left) and forward displacement in metres and its turn
 /// in radians since the previous frame, in the previous root frame. Row 0 repeats row 1 (zero
 /// for a clip of one frame): it has no previous frame.
@@ -42,6 +43,8 @@ struct FeatureSequence {
   Matrix pose;
   Matrix control;
   RootFrame start;  ///< root frame of row 0
+  /// Where rotations had to be fitted to positions: how far that moved a joint at most, metres.
+  double fitM = 0.0;
 
   int frameCount() const { return static_cast<int>(pose.rows()); }
 };
@@ -57,16 +60,19 @@ std::vector<RootFrame> rootPath(const Clip& clip, const FeatureSpec& spec);
 Matrix controlFromTrajectory(const std::vector<RootFrame>& trajectory);
 std::vector<RootFrame> trajectoryFromControl(const Matrix& control, const RootFrame& start);
 
-/// Resamples to spec.fps and extracts pose and control. Throws InputError on invalid clips.
-FeatureSequence extractFeatures(const Clip& clip, const FeatureSpec& spec);
+/// Resamples to spec.fps and extracts pose and control. Rotations are relative to the rest pose of
+/// `skeleton`; null: of the clip's own. Throws InputError on invalid clips and unknown layouts.
+FeatureSequence extractFeatures(const Clip& clip, const FeatureSpec& spec,
+                                std::shared_ptr<const Skeleton> skeleton = nullptr);
 
 /// World motion from features: the root follows the integrated control exactly.
 Clip rebuildMotion(const Matrix& pose, const Matrix& control, const RootFrame& start,
-                   std::shared_ptr<const Skeleton> skeleton, double fps);
+                   std::shared_ptr<const Skeleton> skeleton, const FeatureSpec& spec);
 
-/// Left and right swapped: joints by `mirror`, x, sideways and turn negated.
-FeatureSequence mirrored(const FeatureSequence& sequence, const std::vector<int>& mirror);
+/// Left and right swapped: the pose by its representation, sideways and turn negated.
+FeatureSequence mirrored(const FeatureSequence& sequence, const FeatureSpec& spec,
+                         const Skeleton& skeleton);
 /// Backwards in time, controls negated.
-FeatureSequence timeReversed(const FeatureSequence& sequence);
+FeatureSequence timeReversed(const FeatureSequence& sequence, const FeatureSpec& spec);
 
 }  // namespace marey

@@ -163,6 +163,15 @@ Quatd expMap(const Vec3d& axisAngle) {
   return out.normalized();
 }
 
+Vec3d logNear(const Quatd& rotation, const Vec3d& before) {
+  const Vec3d least = logMap(rotation);
+  const double angle = least.norm();
+  // Whole turns have any axis: that of `before` is the nearest.
+  const Vec3d axis = angle > 1e-9 ? Vec3d(least / angle) : before.normalized();
+  const double turns = std::round((before.dot(axis) - angle) / kTurn);
+  return turns == 0.0 ? least : Vec3d((angle + kTurn * turns) * axis);
+}
+
 Vec6d sixDFromQuat(const Quatd& rotation) {
   const Eigen::Matrix3d matrix = rotation.toRotationMatrix();
   Vec6d out;

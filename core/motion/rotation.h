@@ -48,6 +48,9 @@ std::vector<Vec3d> unwrappedEuler(const std::vector<Quatd>& rotations, const Eul
 /// Axis times angle, angle in [0, pi]; a series replaces the quotient near the identity.
 Vec3d logMap(const Quatd& rotation);
 Quatd expMap(const Vec3d& axisAngle);
+/// Of all vectors whose expMap is `rotation` (their angles differ by whole turns) the one nearest
+/// to `before`, so that curves do not jump where an angle passes pi.
+Vec3d logNear(const Quatd& rotation, const Vec3d& before);
 
 /// The first two columns of the rotation matrix (Zhou et al. 2019, "On the continuity of rotation
 /// representations in neural networks").

@@ -1,6 +1,7 @@
 #include "motion/skeleton.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 
@@ -24,7 +25,9 @@ bool Skeleton::operator==(const Skeleton& other) const {
   };
   return names == other.names && parents == other.parents && offsets == other.offsets &&
          std::equal(endSites.begin(), endSites.end(), other.endSites.begin(), other.endSites.end(),
-                    sameSite);
+                    sameSite) &&
+         std::equal(rest.begin(), rest.end(), other.rest.begin(), other.rest.end(),
+                    [](const auto& a, const auto& b) { return a.coeffs() == b.coeffs(); });
 }
 
 void validate(const Skeleton& skeleton, const std::string& origin) {
@@ -41,6 +44,12 @@ void validate(const Skeleton& skeleton, const std::string& origin) {
     if (!skeleton.offsets[j].allFinite())
       throw InputError(place, "a finite offset", "NaN or infinity");
   }
+  if (!skeleton.rest.empty() && skeleton.rest.size() != n)
+    throwInput({.path = origin}, fmt::format("a rest rotation for each of {} joints, or none", n),
+               "{}", skeleton.rest.size());
+  for (const auto& q : skeleton.rest)
+    if (!(std::abs(q.norm() - 1.f) < 1e-3f))
+      throwInput({.path = origin}, "rest rotations of length 1", "{}", q.norm());
 }
 
 }  // namespace marey

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace marey {
 
@@ -20,6 +21,9 @@ struct Skeleton {
   std::vector<int> parents;              ///< -1 for the root
   std::vector<Eigen::Vector3f> offsets;  ///< rest offset from the parent, metres, parent's frame
   std::vector<EndSite> endSites;
+  /// Local rotations of the rest pose, for values that are relative to it; empty: all are the
+  /// identity, as files have it.
+  std::vector<Eigen::Quaternionf> rest = {};
 
   int jointCount() const { return static_cast<int>(names.size()); }
   /// Index of the joint of that name, or -1.

@@ -93,7 +93,9 @@ void addLikelihoods(const ExperimentResult& r, ReportData& out) {
   for (size_t i = 0; i < r.systems.size(); ++i) {
     const SystemResult& s = r.systems[i];
     if (s.info.density == DensityKind::None) continue;
-    LikelihoodPanel panel{.title = "Log-likelihood under " + labelOf(s), .fps = r.experiment.fps};
+    LikelihoodPanel panel{.title = "Log-likelihood under " + labelOf(s),
+                          .unit = s.naturalLikelihood.unit,
+                          .fps = r.experiment.fps};
     panel.groups.push_back({0, longestRuns(s.naturalScores)});
     std::vector<ClipScore> sampled;
     for (const auto& [name, samples] : s.paths)
@@ -254,7 +256,8 @@ ReportData reportOf(const ExperimentResult& r, const std::string& command, Progr
   addFootsteps(r, out);
   addGait(r, out);
   out.distributions = distributionPanels(r);
-  out.tables = {footstepTable(r), likelihoodTable(r)};
+  out.tables = {footstepTable(r)};
+  for (Table& table : likelihoodTables(r)) out.tables.push_back(std::move(table));
   if (!r.experiment.paths.empty() && !r.systems.empty()) out.tables.push_back(obedienceTable(r));
   for (Table& table : statisticTables(r, progress)) out.tables.push_back(std::move(table));
   if (!r.leftOut.empty()) out.notes.push_back({"Left out", leftOutText(r)});

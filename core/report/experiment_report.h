@@ -18,7 +18,9 @@ ReportData reportOf(const ExperimentResult& result, const std::string& command, 
 
 // Parts of it: the tables, and what they need.
 Table footstepTable(const ExperimentResult& result);
-Table likelihoodTable(const ExperimentResult& result);
+/// One for each unit: only likelihoods of one unit can be compared. One without rows where there is
+/// no system.
+std::vector<Table> likelihoodTables(const ExperimentResult& result);
 Table obedienceTable(const ExperimentResult& result);
 Table definitionTable();
 std::vector<Table> statisticTables(const ExperimentResult& result, Progress& progress);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "experiment/comparison.h"
+#include "model/pose_units.h"
 #include "report/experiment_report.h"
 #include "stats/bones.h"
 #include "stats/footsteps.h"
@@ -151,35 +152,71 @@ Table footstepTable(const ExperimentResult& r) {
 
 namespace {
 
+using Systems = std::vector<const SystemResult*>;
+
+/// The systems by the unit of their likelihoods, in their order.
+std::vector<Systems> byUnit(const ExperimentResult& r) {
+  std::vector<Systems> out;
+  for (const SystemResult& s : r.systems) {
+    const auto alike = std::find_if(out.begin(), out.end(), [&](const Systems& systems) {
+      return systems.front()->naturalLikelihood.unit == s.naturalLikelihood.unit;
+    });
+    if (alike == out.end())
+      out.push_back({&s});
+    else
+      alike->push_back(&s);
+  }
+  return out;
+}
+
 /// The unit, what is compared, and what the numbers hang on.
-std::string likelihoodCaption(const ExperimentResult& r) {
+std::string likelihoodCaption(const Systems& systems, const std::string& unit, bool alone) {
   std::string out = fmt::format(
       "Unit: {}, mean over the frames that every system scores (from frame {} of each clip on). "
       "linear-Gaussian: a ridge autoregression without a network, fitted on the model's training "
       "data with the same observation floor and evaluated on the same frames. Effective "
       "dimensions: directions of pose space in which the model is wider than its floor (over half "
       "of its variance is its own).",
-      kLikelihoodUnit, r.systems.empty() ? 0 : r.systems.front().naturalLikelihood.firstFrame);
-  for (const auto& s : r.systems) {
-    out += " " + s.name + ": " + floorText(s.info);
-    for (const auto* summary : {&s.naturalLikelihood, &s.heldOutLikelihood})
+      unit, systems.empty() ? 0 : systems.front()->naturalLikelihood.firstFrame);
+  if (!alone)
+    out += " Numbers of another unit are densities of other values: they say nothing of these.";
+  for (const SystemResult* s : systems) {
+    out += " " + s->name + ": " + floorText(s->info);
+    for (const auto* summary : {&s->naturalLikelihood, &s->heldOutLikelihood})
       if (const std::string text = tooShortText(*summary); !text.empty()) out += " " + text + ".";
   }
   return out;
 }
 
-}  // namespace
+std::vector<Cell> likelihoodRow(const SystemResult& s) {
+  const LikelihoodSummary& natural = s.naturalLikelihood;
+  return {{labelOf(s)},
+          numberCell(natural.nats, 1),
+          numberCell(natural.linearGaussian, 1),
+          numberCell(s.heldOutLikelihood.nats, 1),
+          numberCell(natural.natsPerEffectiveDimension, 2),
+          numberCell(natural.effectiveDimensions, 0),
+          numberCell(natural.floorDirections, 0),
+          numberCell(natural.clips, 0),
+          numberCell(static_cast<double>(natural.frames), 0),
+          numberCell(static_cast<double>(natural.tooShort.size()), 0),
+          numberCell(static_cast<double>(s.info.parameters) / 1e6, 2),
+          numberCell(s.framesPerSecond, 0)};
+}
 
-Table likelihoodTable(const ExperimentResult& r) {
+/// Of systems of one unit.
+Table likelihoodTable(const Systems& systems, bool alone) {
+  const std::string unit =
+      systems.empty() ? likelihoodUnit(FeatureSpec{}) : systems.front()->naturalLikelihood.unit;
   Table out{.id = "likelihood",
             .title = "Log-likelihood",
-            .caption = likelihoodCaption(r),
+            .caption = likelihoodCaption(systems, unit, alone),
             .section = Section::Likelihood,
             .columns = {{"system"},
-                        {"natural clips", kLikelihoodUnit},
-                        {"linear-Gaussian", kLikelihoodUnit},
-                        {"own samples", kLikelihoodUnit},
-                        {"per effective dimension", "nats, cm"},
+                        {"natural clips", unit},
+                        {"linear-Gaussian", unit},
+                        {"own samples", unit},
+                        {"per effective dimension", natsUnit(unit)},
                         {"effective dimensions"},
                         {"on the floor", "directions"},
                         {"clips"},
@@ -187,20 +224,20 @@ Table likelihoodTable(const ExperimentResult& r) {
                         {"too short", "clips"},
                         {"parameters", "M"},
                         {"sampling", "frames/s"}}};
-  for (const auto& s : r.systems) {
-    const LikelihoodSummary& natural = s.naturalLikelihood;
-    out.rows.push_back({{labelOf(s)},
-                        numberCell(natural.nats, 1),
-                        numberCell(natural.linearGaussian, 1),
-                        numberCell(s.heldOutLikelihood.nats, 1),
-                        numberCell(natural.natsPerEffectiveDimension, 2),
-                        numberCell(natural.effectiveDimensions, 0),
-                        numberCell(natural.floorDirections, 0),
-                        numberCell(natural.clips, 0),
-                        numberCell(static_cast<double>(natural.frames), 0),
-                        numberCell(static_cast<double>(natural.tooShort.size()), 0),
-                        numberCell(static_cast<double>(s.info.parameters) / 1e6, 2),
-                        numberCell(s.framesPerSecond, 0)});
+  for (const SystemResult* s : systems) out.rows.push_back(likelihoodRow(*s));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Table> likelihoodTables(const ExperimentResult& r) {
+  const auto groups = byUnit(r);
+  if (groups.empty()) return {likelihoodTable({}, true)};
+  std::vector<Table> out;
+  for (const Systems& systems : groups) {
+    out.push_back(likelihoodTable(systems, groups.size() == 1));
+    if (groups.size() > 1) out.back().title += ", " + systems.front()->info.features.layout;
+    if (out.size() > 1) out.back().id += "-" + std::to_string(out.size());
   }
   return out;
 }

@@ -182,17 +182,17 @@ Figure sceneFigure(const ReportData& data, const ScenePanel& panel, int number) 
 Figure likelihoodFigure(const ReportData& data, const LikelihoodPanel& panel, int number) {
   Chart chart;
   chart.x = {.label = "time", .unit = "s"};
-  chart.y = {.label = "log-likelihood", .unit = kLikelihoodUnit};
+  chart.y = {.label = "log-likelihood", .unit = panel.unit};
   for (const LikelihoodGroup& group : panel.groups) addLikelihood(chart, data, group, panel.fps);
   chart.legend = render::LegendPlace::Direct;
   Figure figure{
       .id = figureId("likelihood", number), .section = Section::Likelihood, .title = panel.title};
-  figure.caption =
-      "Log-likelihood of each frame under the model, in nats per frame with poses in centimetres: "
-      "the line "
-      "is the median over runs, the band their 5 to 95 % range. Higher means more expected by the "
-      "model; drops show "
-      "frames that it finds unlikely.";
+  figure.caption = fmt::format(
+      "Log-likelihood of each frame under the model ({}): the line is the median over runs, the "
+      "band "
+      "their 5 to 95 % range. Higher means more expected by the model; drops show frames that it "
+      "finds unlikely.",
+      panel.unit);
   if (panel.linearGaussianNats) {
     chart.series.push_back({.kind = SeriesKind::HorizontalRule,
                             .name = "linear-Gaussian",

@@ -56,10 +56,11 @@ struct DistributionPanel {
 struct LikelihoodGroup {
   int system = 0;
   std::vector<std::vector<double>>
-      nats;  ///< runs x frames, nats per frame, cm; NaN where not scored
+      nats;  ///< runs x frames, in the panel's unit; NaN where not scored
 };
 struct LikelihoodPanel {
   std::string title;
+  std::string unit = {};  ///< "nats per frame, cm": of one model, hence one
   double fps = 20.0;
   std::vector<LikelihoodGroup> groups;
   std::optional<double> linearGaussianNats;  ///< of the natural clips, where the model has one

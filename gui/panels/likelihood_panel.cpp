@@ -14,6 +14,8 @@
 #include "panels/value_table.h"
 #include "plots/likelihood_data.h"
 
+#include "model/pose_units.h"
+
 namespace marey::gui {
 namespace {
 constexpr double kSmoothingS = 0.5;
@@ -45,7 +47,7 @@ class LikelihoodPanel : public PlotPanel {
          std::initializer_list<QWidget*>{m_view, m_smooth, m_score, m_worst, m_worstOf})
       tools()->addWidget(tool);
     tools()->insertStretch(2);
-    chart()->setToolTip(tr("Nats per frame, cm. Higher is more expected."));
+    chart()->setToolTip(tr("Log-likelihood per frame. Higher is more expected."));
     m_table = new ValueTable(this);
     m_table->setObjectName(QStringLiteral("likelihoodTable"));
     m_table->setMaximumHeight(kTableHeight);
@@ -179,30 +181,50 @@ class LikelihoodPanel : public PlotPanel {
         });
   }
 
+  /// Densities of different values share no column: three columns for each unit.
+  static QStringList headerOf(const std::vector<std::string>& units) {
+    QStringList out{tr("motion"), tr("model")};
+    for (const std::string& each : units) {
+      const QString unit = QString::fromStdString(each);
+      out << unit << tr("linear-Gaussian, %1").arg(unit)
+          << tr("per effective dimension, %1").arg(QString::fromStdString(natsUnit(each)));
+    }
+    return out << tr("effective dimensions") << tr("on the floor") << tr("clips") << tr("frames")
+               << tr("too short");
+  }
+
+  static std::vector<ValueCell> cellsOf(const LikelihoodRow& row,
+                                        const std::vector<std::string>& units) {
+    const LikelihoodSummary& s = row.summary;
+    const QString floor = QString::fromStdString(row.floor);
+    std::vector<ValueCell> out{{QString::fromStdString(row.name), std::nullopt, floor},
+                               {QString::fromStdString(row.system), std::nullopt, floor}};
+    for (const std::string& unit : units)
+      for (const auto& [value, decimals] : {std::pair{s.nats, 1}, std::pair{s.linearGaussian, 1},
+                                            std::pair{s.natsPerEffectiveDimension, 2}})
+        out.push_back(unit == s.unit ? numberCell(value, decimals)
+                                     : ValueCell{QString(), std::nullopt, QString()});
+    for (const double value :
+         {s.effectiveDimensions, s.floorDirections, static_cast<double>(s.clips),
+          static_cast<double>(s.frames), static_cast<double>(s.tooShort.size())})
+      out.push_back(numberCell(value, 0));
+    return out;
+  }
+
   void showRows(const std::vector<LikelihoodRow>& rows) {
+    std::vector<std::string> units;
+    for (const LikelihoodRow& row : rows)
+      if (std::find(units.begin(), units.end(), row.summary.unit) == units.end())
+        units.push_back(row.summary.unit);
     std::vector<std::vector<ValueCell>> cells;
     QStringList left;
     for (const LikelihoodRow& row : rows) {
-      const LikelihoodSummary& s = row.summary;
-      const QString floor = QString::fromStdString(row.floor);
-      cells.push_back({{QString::fromStdString(row.name), std::nullopt, floor},
-                       {QString::fromStdString(row.system), std::nullopt, floor},
-                       numberCell(s.nats, 1),
-                       numberCell(s.linearGaussian, 1),
-                       numberCell(s.natsPerEffectiveDimension, 2),
-                       numberCell(s.effectiveDimensions, 0),
-                       numberCell(s.floorDirections, 0),
-                       numberCell(s.clips, 0),
-                       numberCell(static_cast<double>(s.frames), 0),
-                       numberCell(static_cast<double>(s.tooShort.size()), 0)});
-      if (!s.tooShort.empty())
-        left << QString::fromStdString(row.name + ", " + row.system + ": " + tooShortText(s));
+      cells.push_back(cellsOf(row, units));
+      if (!row.summary.tooShort.empty())
+        left << QString::fromStdString(row.name + ", " + row.system + ": " +
+                                       tooShortText(row.summary));
     }
-    m_table->setRows({tr("motion"), tr("model"), tr("nats per frame, cm"),
-                      tr("linear-Gaussian, nats per frame, cm"),
-                      tr("nats per effective dimension, cm"), tr("effective dimensions"),
-                      tr("on the floor"), tr("clips"), tr("frames"), tr("too short")},
-                     cells);
+    m_table->setRows(headerOf(units), cells);
     m_left->setText(left.join(QStringLiteral("\n")));
     m_left->setVisible(!left.isEmpty());
   }

@@ -12,6 +12,8 @@
 
 #include "panels/paint_style.h"
 
+#include "model/pose_units.h"
+
 namespace marey::gui {
 namespace {
 
@@ -313,12 +315,27 @@ QVariant MotionTree::motionData(const MotionGroup& group, size_t index, int colu
     case Score:
       if (!motion.score) return {};
       if (motion.score->tooShort()) return tr("too short");
-      return motion.score->loglikNats.empty()
-                 ? tr("none")
-                 : QString::number(motion.score->meanNatsPerFrame(), 'f', 1);
+      return motion.score->loglikNats.empty() ? tr("none") : scoreText(*motion.score);
     default:
       return {};
   }
+}
+
+std::optional<std::string> MotionTree::scoreUnit() const {
+  std::optional<std::string> out;
+  for (const MotionGroup& group : m_workspace.groups())
+    for (const Motion& motion : group.motions) {
+      if (!motion.score || motion.score->unit.empty()) continue;
+      if (out && *out != motion.score->unit) return std::nullopt;
+      out = motion.score->unit;
+    }
+  return out;
+}
+
+QString MotionTree::scoreText(const ClipScore& score) const {
+  const QString number = QString::number(score.meanNatsPerFrame(), 'f', 1);
+  return scoreUnit() ? number
+                     : number + QStringLiteral(" ") + QString::fromStdString(natsUnit(score.unit));
 }
 
 bool MotionTree::setData(const QModelIndex& index, const QVariant& value, int role) {
@@ -337,7 +354,7 @@ bool MotionTree::setData(const QModelIndex& index, const QVariant& value, int ro
 
 QVariant MotionTree::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation == Qt::Horizontal && role == Qt::ToolTipRole && section == Score)
-    return tr("Mean log-likelihood of a sample under its own model, nats per frame, cm");
+    return tr("Mean log-likelihood of a sample under its own model, nats per frame");
   if (orientation == Qt::Horizontal && role == Qt::ToolTipRole && section == Use)
     return tr("Counted by plots and statistics, whether it is shown or hidden");
   if (orientation == Qt::Horizontal && role == Qt::ToolTipRole && section == Name)
@@ -351,7 +368,7 @@ QVariant MotionTree::headerData(int section, Qt::Orientation orientation, int ro
     case Seconds:
       return tr("s");
     case Score:
-      return tr("nats, cm");
+      return QString::fromStdString(natsUnit(scoreUnit().value_or("nats")));
     case Use:
       return tr("use");
     default:

@@ -56,6 +56,9 @@ class MotionTree : public QAbstractItemModel {
   QVariant branchData(const Branch& branch, int column, int role) const;
   /// Of all motions in the branch.
   QVariant state(const Branch& branch, const MotionGroup& group, bool Motion::*flag) const;
+  /// Of all scores there are; none where there are none, or several.
+  std::optional<std::string> scoreUnit() const;
+  QString scoreText(const ClipScore& score) const;
   QVariant modelData(size_t system, int column, int role) const;
   QVariant motionData(const MotionGroup& group, size_t index, int column, int role) const;
 

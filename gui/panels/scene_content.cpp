@@ -37,21 +37,30 @@ void colourByValue(const Workspace& workspace, const SceneSettings& settings,
   const std::string system = naturalSystem(workspace, settings);
   const std::vector<ClipScore>* scores = likelihood ? workspace.naturalScores(system) : nullptr;
   std::vector<ColourSource> sources;
-  bool missing = false, natural = false;
+  bool missing = false, natural = false, others = false;
+  std::string unit;  // of the scale: that of the first motion that has one
   for (const MotionId& id : content.ids) {
     const MotionGroup& group = *workspace.group(id.group);
     sources.push_back({group.motions[static_cast<size_t>(id.index)].clip, nullptr});
     if (likelihood) sources.back().score = scoreOf(group, id, scores);
     missing = missing || (likelihood && !sources.back().score);
+    if (const ClipScore* score = sources.back().score; score && !score->unit.empty()) {
+      if (unit.empty()) unit = score->unit;
+      others = others || score->unit != unit;
+      if (score->unit != unit) sources.back().score = nullptr;
+    }
     natural = natural || group.natural();
   }
   const MotionColours& colours = colouring.of(sources, settings.colourBy, modelRate(workspace));
   content.legend.scale = colours.scale;
-  content.legend.scaleTitle =
-      likelihood ? tr("Log-likelihood (nats per frame, cm)") : tr("Root speed (m/s)");
+  content.legend.scaleTitle = !likelihood ? tr("Root speed (m/s)")
+                              : unit.empty()
+                                  ? tr("Log-likelihood")
+                                  : tr("Log-likelihood (%1)").arg(QString::fromStdString(unit));
   QStringList notes;
   if (likelihood && natural && !system.empty())
     notes << tr("Natural motion under %1").arg(QString::fromStdString(system));
+  if (others) notes << tr("Grey: in another unit");
   if (missing) notes << tr("Grey: not scored yet");
   content.legend.note = notes.join(QStringLiteral(" · "));
   for (size_t i = 0; i < sources.size(); ++i) {

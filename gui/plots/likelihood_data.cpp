@@ -7,7 +7,7 @@
 #include "plots/count_strip.h"
 #include <fmt/format.h>
 
-#include "model/motion_model.h"
+#include "model/pose_units.h"
 #include "motion/main_body.h"
 #include "stats/sample_distance.h"
 
@@ -41,6 +41,7 @@ void addNatural(std::vector<LikelihoodGroup>& out, const MotionSet& set, const s
     const auto index = static_cast<size_t>(id.index);
     if (index >= scores.size() || scores[index].loglikNats.empty()) continue;
     group.look.ids.push_back(id);
+    group.unit = scores[index].unit;
     group.runs.push_back(runOf(id, scores[index], *set.clips[at]));
   }
   group.notScored = static_cast<int>(set.ids.size() - group.runs.size());
@@ -157,6 +158,7 @@ std::vector<LikelihoodGroup> likelihoodGroups(const std::vector<MotionGroup>& gr
       const auto& score = owner->motions[static_cast<size_t>(id.index)].score;
       if (!score || score->loglikNats.empty()) continue;
       group.look.ids.push_back(id);
+      group.unit = score->unit;
       group.runs.push_back(runOf(id, *score, *owner->motions[static_cast<size_t>(id.index)].clip));
     }
     if (!group.runs.empty()) out.push_back(std::move(group));
@@ -194,7 +196,7 @@ std::optional<WorstFrame> worstFrame(const std::vector<LikelihoodGroup>& groups,
           const double time = (run.firstFrame + static_cast<double>(i)) / group.fps;
           if (range && (time < range->beginS || time > range->endS)) continue;
           if (!worst || run.nats[i] < worst->nats)
-            worst = WorstFrame{run.id, time, run.nats[i],
+            worst = WorstFrame{run.id, time, run.nats[i], group.unit,
                                i < run.joints.size() ? run.joints[i] : std::string()};
         }
     }
@@ -243,14 +245,19 @@ std::vector<LikelihoodRow> likelihoodRows(const std::vector<MotionGroup>& groups
 }
 
 namespace {
-/// The chart of every group: one for each skeleton, by their first groups.
+/// Whether likelihoods of two groups are on one scale. A group without runs has no unit.
+bool comparable(const LikelihoodGroup& a, const LikelihoodGroup& b) {
+  return sameJoints(*a.body, *b.body) && (a.unit == b.unit || a.unit.empty() || b.unit.empty());
+}
+
+/// The chart of every group: one for each skeleton and unit, by their first groups.
 std::vector<int> chartsOf(const std::vector<LikelihoodGroup>& groups) {
   std::vector<int> out;
-  std::vector<const Skeleton*> bodies;
+  std::vector<const LikelihoodGroup*> kinds;
   for (const LikelihoodGroup& group : groups) {
     size_t chart = 0;
-    while (chart < bodies.size() && !sameJoints(*bodies[chart], *group.body)) ++chart;
-    if (chart == bodies.size()) bodies.push_back(group.body.get());
+    while (chart < kinds.size() && !comparable(*kinds[chart], group)) ++chart;
+    if (chart == kinds.size()) kinds.push_back(&group);
     out.push_back(static_cast<int>(chart));
   }
   return out;
@@ -264,6 +271,12 @@ MotionCount countOf(const LikelihoodGroup& group) {
     for (size_t i = 0; i < run.nats.size(); ++i) ++count.goingOn[first + i];
   }
   return count;
+}
+
+std::string unitOf(const std::vector<LikelihoodGroup>& alike) {
+  for (const LikelihoodGroup& group : alike)
+    if (!group.unit.empty()) return group.unit;
+  return {};
 }
 
 /// What the linear-Gaussian autoregression of a system makes of the natural clips.
@@ -282,12 +295,12 @@ void addRule(LinkedGrid& out, const LikelihoodRow& row, bool named) {
            .dashed = true});
 }
 
-/// The groups of one skeleton in the last chart of the grid.
+/// The groups of one skeleton and unit in the last chart of the grid.
 void addBody(LinkedGrid& out, const std::vector<LikelihoodGroup>& groups,
              const std::vector<LikelihoodRow>& rows, bool everyMotion) {
   render::Chart& chart = out.grid.charts.back();
   chart.x = {.label = "time", .unit = "s"};
-  chart.y = {.label = "log-likelihood", .unit = kLikelihoodUnit};
+  chart.y = {.label = "log-likelihood", .unit = unitOf(groups)};
   for (const LikelihoodGroup& group : groups)
     everyMotion ? addCloud(out, group) : addBand(out, group);
   if (everyMotion) chart.y.range = centralRange(groups);
@@ -333,7 +346,7 @@ void markWorst(LinkedGrid& grid, const std::vector<LikelihoodGroup>& groups,
       continue;
     grid.addTo(charts[g],
                {.kind = SeriesKind::VerticalRule,
-                .name = fmt::format("worst frame, {:.0f} nats, cm{}{}", worst.nats,
+                .name = fmt::format("worst frame, {:.0f} {}{}{}", worst.nats, natsUnit(worst.unit),
                                     worst.joint.empty() ? "" : ": ", worst.joint),
                 .colour = render::grey(0.45),
                 .x = {worst.timeS},

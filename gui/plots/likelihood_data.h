@@ -1,4 +1,4 @@
-// Log-likelihoods over time: nats per frame, cm (numbers as in ClipScore).
+// Log-likelihoods over time (numbers and units as in ClipScore).
 #pragma once
 
 #include <functional>
@@ -23,6 +23,7 @@ struct LikelihoodGroup {
   std::vector<LikelihoodRun> runs;
   std::string system;                    ///< whose density it is
   std::shared_ptr<const Skeleton> body;  ///< densities over other joints are not comparable
+  std::string unit = {};                 ///< nor are those of another unit
   int notScored = 0;                     ///< motions that are counted elsewhere
 };
 
@@ -43,6 +44,7 @@ void smooth(std::vector<LikelihoodGroup>& groups, double seconds);
 struct WorstFrame {
   MotionId id;
   double timeS = 0.0, nats = 0.0;
+  std::string unit = {};   ///< of nats
   std::string joint = {};  ///< that stands out in it, where that is known
 };
 /// The least likely frame inside the range under one system, for densities of several have no
@@ -73,9 +75,9 @@ std::vector<LikelihoodRow> likelihoodRows(const std::vector<MotionGroup>& groups
                                           const ModelFacts& facts);
 
 /// Median and 5 to 95 % band per group, or every motion as a line of a cloud: a chart for every
-/// skeleton, and where motions end before others a strip that says how many go on. A rule shows
-/// what the linear-Gaussian autoregression of each system makes of the natural clips, where it is
-/// known.
+/// skeleton and unit, and where motions end before others a strip that says how many go on. A rule
+/// shows what the linear-Gaussian autoregression of each system makes of the natural clips, where
+/// it is known.
 LinkedGrid likelihoodGrid(const std::vector<LikelihoodGroup>& groups,
                           const std::vector<LikelihoodRow>& rows, bool everyMotion);
 /// A line at that frame, which stands for its motion.

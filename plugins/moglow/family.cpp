@@ -101,11 +101,21 @@ bool recognises(const Json& config) {
   return config.is_object() && (config.contains("Glow") || config.contains("lstm_layers"));
 }
 
+/// The kinematic base knows feet and bones by the positions of joints.
+void requirePoses(const Config& config, const FeatureSpec& features, const std::string& origin) {
+  const std::string needed = "root-positions";
+  if (config.poseBase == "kinematic" && features.layout != needed)
+    throw InputError({.path = origin, .item = "key 'model.pose_base'"},
+                     "none or linear for " + features.layout + " poses",
+                     "kinematic, which needs data of marey prepare --layout " + needed);
+}
+
 Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const TraineeData& data,
                     uint64_t seed) {
   Config config = configFromJson(modelConfig, origin);
   config.poseDim = data.poseDim;
   config.controlDim = data.controlDim;
+  requirePoses(config, data.features, origin);
   if (!statesFloor(modelConfig)) config.observationFloorMm = kObservationFloorMm;
   const BodyFacts body = bodyFacts(data.skeleton.get(), data.standardiser);
   config.contacts = 2 * static_cast<int>(body.feet.size());

@@ -56,7 +56,8 @@ Vec3 at(double x, double y, double z) {
 }
 
 Clip rebuilt(const FeatureSequence& features) {
-  return rebuildMotion(features.pose, features.control, features.start, walkerSkeleton(), kFps);
+  return rebuildMotion(features.pose, features.control, features.start, walkerSkeleton(),
+                       {.fps = kFps});
 }
 
 TEST(Features, RebuildingATurningWalkGivesItsWorldMotion) {
@@ -158,9 +159,8 @@ TEST(Features, TheFirstControlRowRepeatsTheSecond) {
 }
 
 TEST(Features, MirroringTwiceChangesNothing) {
-  const auto mirror = rolesOf(*walkerSkeleton()).mirror;
   const auto f = extractFeatures(turningWalk(), {});
-  const auto twice = mirrored(mirrored(f, mirror), mirror);
+  const auto twice = mirrored(mirrored(f, {}, *walkerSkeleton()), {}, *walkerSkeleton());
   EXPECT_EQ(twice.pose, f.pose);
   EXPECT_EQ(twice.control, f.control);
   EXPECT_EQ(twice.start.x, f.start.x);
@@ -172,7 +172,7 @@ TEST(Features, AMirroredWalkIsTheWorldMirroredWithLeftAndRightSwapped) {
   const auto mirror = rolesOf(s).mirror;
   ASSERT_EQ(mirror[static_cast<size_t>(s.find("LeftFoot"))], s.find("RightFoot"));
   const auto f = extractFeatures(turningWalk(), {});
-  const auto m = mirrored(f, mirror);
+  const auto m = mirrored(f, {}, s);
   EXPECT_EQ(Matrix(m.control.col(0)), Matrix(-f.control.col(0)));
   EXPECT_EQ(Matrix(m.control.col(1)), Matrix(f.control.col(1)));
   EXPECT_EQ(Matrix(m.control.col(2)), Matrix(-f.control.col(2)));
@@ -186,7 +186,7 @@ TEST(Features, AMirroredWalkIsTheWorldMirroredWithLeftAndRightSwapped) {
 
 TEST(Features, AReversedWalkIsTheSameWorldMotionBackwards) {
   const auto f = extractFeatures(turningWalk(), {});
-  const Clip plain = rebuilt(f), back = rebuilt(timeReversed(f));
+  const Clip plain = rebuilt(f), back = rebuilt(timeReversed(f, {}));
   const int n = plain.frameCount();
   for (int t = 0; t < n; ++t)
     for (int j = 0; j < plain.jointCount(); ++j)
@@ -195,7 +195,8 @@ TEST(Features, AReversedWalkIsTheSameWorldMotionBackwards) {
 
 TEST(Features, AReversedForwardWalkHasBackwardControl) {
   const auto f = timeReversed(
-      extractFeatures(bodyClip(9, [](int t) { return Stance{at(0, 1, 0.05 * t)}; }), kUnfiltered));
+      extractFeatures(bodyClip(9, [](int t) { return Stance{at(0, 1, 0.05 * t)}; }), kUnfiltered),
+      {});
   for (long t = 0; t < 9; ++t) EXPECT_NEAR(f.control(t, 1), -0.05, 1e-6);
 }
 
@@ -210,10 +211,12 @@ TEST(Features, ASkeletonWithoutHipJointsHasNoFacing) {
 }
 
 TEST(Features, PosesOfAnotherWidthAreRefused) {
-  EXPECT_THROW(rebuildMotion(Matrix::Zero(4, 60), Matrix::Zero(4, 3), {}, walkerSkeleton(), kFps),
-               InputError);
-  EXPECT_THROW(rebuildMotion(Matrix::Zero(4, 63), Matrix::Zero(5, 3), {}, walkerSkeleton(), kFps),
-               InputError);
+  EXPECT_THROW(
+      rebuildMotion(Matrix::Zero(4, 60), Matrix::Zero(4, 3), {}, walkerSkeleton(), {.fps = kFps}),
+      InputError);
+  EXPECT_THROW(
+      rebuildMotion(Matrix::Zero(4, 63), Matrix::Zero(5, 3), {}, walkerSkeleton(), {.fps = kFps}),
+      InputError);
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ void addDistributions(ReportData& data) {
 }
 
 void addLikelihood(ReportData& data, const std::string& path, double seconds) {
-  LikelihoodPanel panel{"Path " + path, 20.0, {}, 39.9};
+  LikelihoodPanel panel{"Path " + path, "nats per frame, cm", 20.0, {}, 39.9};
   const int frames = static_cast<int>(seconds * 20.0);
   for (int s = 0; s < static_cast<int>(data.systems.size()); ++s) {
     LikelihoodGroup group{s, {}};

@@ -1,9 +1,10 @@
 // Fill in joints and frames that are missing from a motion.
-#include <cmath>
+#include <algorithm>
 
 #include "task/task_list.h"
 
 #include "base/error.h"
+#include "model/pose_units.h"
 
 namespace marey {
 namespace {
@@ -31,15 +32,16 @@ Matrix latentsOf(const ModelInfo& info, const TaskRequest& r, int sample, long f
 }
 
 /// Every value of a joint's channels is as known as the joint.
-Matrix knownValues(const Matrix& joints, const FeatureSequence& features, int jointCount) {
+Matrix knownValues(const Matrix& joints, const FeatureSequence& features, const ModelInfo& info) {
+  const int jointCount = info.skeleton->jointCount();
   if (joints.rows() != features.frameCount() || joints.cols() != jointCount)
     throwInput({.path = features.name, .item = "mask"},
                fmt::format("{} frames x {} joints", features.frameCount(), jointCount), "{} x {}",
                joints.rows(), joints.cols());
-  const long perJoint = features.pose.cols() / jointCount;
+  const auto channels = channelsOf(info);
   Matrix out(joints.rows(), features.pose.cols());
-  for (long j = 0; j < jointCount; ++j)
-    out.middleCols(j * perJoint, perJoint) = joints.col(j).replicate(1, perJoint);
+  for (size_t i = 0; i < channels.size(); ++i)
+    out.col(static_cast<long>(i)) = joints.col(channels[i].joint);
   return out;
 }
 
@@ -48,16 +50,15 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
   if (!r.clip) throw InputError({.path = "complete"}, "a clip to complete", "none");
   const std::string& path = r.clip->source.path.empty() ? r.clip->name : r.clip->source.path;
   requireSameJoints(info, *r.clip, path);
-  FeatureSequence features = extractFeatures(*r.clip, info.features);
+  FeatureSequence features = featuresOf(info, *r.clip);
   features.name = path;
-  CompletionRequest request{
-      .poses = features.pose,
-      .known = knownValues(r.knownJoints, features, info.skeleton->jointCount()),
-      .controls = paddedControls(info, features.control),
-      .latents = {}};
+  CompletionRequest request{.poses = features.pose,
+                            .known = knownValues(r.knownJoints, features, info),
+                            .controls = paddedControls(info, features.control),
+                            .latents = {}};
   TaskOutcome out;
-  out.reference = rebuildMotion(features.pose, features.control, features.start, info.skeleton,
-                                info.features.fps);
+  out.reference =
+      rebuildMotion(features.pose, features.control, features.start, info.skeleton, info.features);
   for (int sample = 0; sample < r.samples; ++sample) {
     request.latents = latentsOf(info, r, sample, features.pose.rows());
     const FeatureSequence filled{

@@ -41,7 +41,7 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
   if (!r.clip) throw InputError({.path = "predict"}, "a clip to go on with", "none");
   const std::string& path = r.clip->source.path.empty() ? r.clip->name : r.clip->source.path;
   requireSameJoints(info, *r.clip, path);
-  FeatureSequence features = extractFeatures(*r.clip, info.features);
+  FeatureSequence features = featuresOf(info, *r.clip);
   features.name = path;
   const int seed = seedFramesOf(r, info, features);
   const auto own = trajectoryFromControl(features.control, features.start);
@@ -57,7 +57,7 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
     request.path.assign(own.begin() + seed, own.begin() + end);
     out.reference = rebuildMotion(features.pose.middleRows(seed, end - seed),
                                   features.control.middleRows(seed, end - seed), own[seed],
-                                  info.skeleton, info.features.fps);
+                                  info.skeleton, info.features);
     out.reference->name = r.clip->name;
   } else {
     request.path = placedAt(r.path, own[static_cast<size_t>(seed - 1)]);

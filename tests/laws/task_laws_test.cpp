@@ -18,7 +18,7 @@ using test::law::walks;
 /// A request that has something for every task.
 TaskRequest requestFor(const MotionModel& model, const Clip& clip) {
   TaskRequest out{.clip = clip, .path = {}, .samples = 2, .seed = 4};
-  const FeatureSequence features = extractFeatures(clip, model.info().features);
+  const FeatureSequence features = featuresOf(model.info(), clip);
   out.knownJoints = Matrix::Ones(features.frameCount(), clip.jointCount());
   out.knownJoints.rightCols(3).setZero();
   return out;

@@ -75,7 +75,11 @@ std::string statisticCaption(const SystemResult& system, const ComparedNatural& 
       "against natural, two sets of as many controls as are compared; a difference below it says "
       "nothing. For distances (0 is the same) the natural column is that distance.",
       system.heldOut.size(), compared.text);
-  if (r.experiment.heldOutSamples < 2)
+  if (system.info.deterministic())
+    out += fmt::format(
+        " {} draws nothing: equal control always gives the same motion, so its diversity is 0.",
+        system.name);
+  else if (r.experiment.heldOutSamples < 2)
     out += " Diversity needs two samples or more along a control (held_out_samples).";
   return out;
 }

@@ -65,7 +65,8 @@ class DiversityPanel : public PlotPanel {
     for (const DiversityCurve& curve : m_curves) {
       const double mean = meanInRange(curve, workspace().range());
       if (std::isfinite(mean))
-        parts << tr("%1 %2 cm (%3 motions)")
+        parts << (mean == 0.0 ? tr("%1 %2 cm (%3 motions, all the same: the model draws nothing)")
+                              : tr("%1 %2 cm (%3 motions)"))
                      .arg(QString::fromStdString(curve.look.name))
                      .arg(mean, 0, 'f', 1)
                      .arg(curve.compared);

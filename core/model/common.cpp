@@ -26,8 +26,7 @@ std::vector<float> loadVector(const TensorFile& file, const std::string& key, in
 }  // namespace
 
 void requireSameJoints(const ModelInfo& info, const Clip& clip, const std::string& path) {
-  const int joints = info.skeleton ? info.skeleton->jointCount()
-                                   : representationOf(info.features, path).joints(info.poseDim);
+  const int joints = jointsOf(info);
   if (clip.jointCount() != joints)
     throwInput({.path = path}, fmt::format("{} joints, as the model has", joints), "{}",
                clip.jointCount());

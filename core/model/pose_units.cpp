@@ -28,6 +28,11 @@ std::vector<Channel> channelsOf(const ModelInfo& info) {
   return channelsOf(info.features, info.skeleton.get(), info.poseDim);
 }
 
+int jointsOf(const ModelInfo& info) {
+  return info.skeleton ? info.skeleton->jointCount()
+                       : representationOf(info.features).joints(info.poseDim);
+}
+
 std::string likelihoodUnit(const FeatureSpec& features) {
   return "nats per frame, " + representationOf(features).shownUnits;
 }

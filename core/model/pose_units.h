@@ -19,6 +19,9 @@ inline constexpr double kFloorArmM = 0.25;
 std::vector<Channel> channelsOf(const FeatureSpec& features, const Skeleton* skeleton, int poseDim);
 std::vector<Channel> channelsOf(const ModelInfo& info);
 
+/// How many joints the model's poses have.
+int jointsOf(const ModelInfo& info);
+
 /// "nats per frame, cm" or "nats per frame, cm and rad": the unit of every likelihood that is
 /// shown, unless said otherwise. Only likelihoods of one unit can be compared.
 std::string likelihoodUnit(const FeatureSpec& features);

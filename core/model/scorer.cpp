@@ -217,9 +217,9 @@ std::vector<ClipScore> scoreClips(const MotionModel& model, std::span<const Clip
 }
 
 std::string whyNotScored(const ModelInfo& info, const Clip& clip) {
-  if (3 * clip.jointCount() != info.poseDim)
+  if (const int joints = jointsOf(info); clip.jointCount() != joints)
     return fmt::format("another skeleton ({} joints, the model has {} joints)", clip.jointCount(),
-                       info.poseDim / 3);
+                       joints);
   if (!info.skeleton || clip.skeleton->names == info.skeleton->names) return {};
   return otherJoints(*clip.skeleton, *info.skeleton);
 }

@@ -53,8 +53,8 @@ torch::Tensor framesOf(const torch::Tensor& axes, const torch::Tensor& sides,
 /// the plane of the bend, in that plane, and along the thigh. A place out of reach is aimed at.
 torch::Tensor kneeFrame(const BoneChart& chart, int64_t knee, int64_t foot,
                         const torch::Tensor& hip, const torch::Tensor& place,
-                        const torch::Tensor& foreseenThigh) {
-  const auto thigh = chart.lengths[knee], shin = chart.lengths[foot];
+                        const torch::Tensor& foreseenThigh, const torch::Tensor& lengths) {
+  const auto thigh = lengths.narrow(1, knee, 1), shin = lengths.narrow(1, foot, 1);
   const auto far = (place - hip).norm(2, -1, true).clamp_min(1e-3);
   const auto axis = (place - hip) / far;
   const auto d =
@@ -100,7 +100,7 @@ torch::Tensor framesAt(const BoneChart& chart, const std::vector<int64_t>& joint
     const auto column = static_cast<int64_t>(k);
     frames[k] = joints[k] == limb.knee
                     ? kneeFrame(chart, limb.knee, chart.feet[static_cast<size_t>(limb.foot)], from,
-                                place, bones.select(1, column))
+                                place, bones.select(1, column), foreseen.lengths)
                     : framesOf(axes[column], sides[column], unit(place - from));
   }
   return torch::stack(frames, 1);
@@ -177,7 +177,7 @@ torch::Tensor released(const BoneChart& chart, int64_t joint, const torch::Tenso
   const auto flat = backThroughGate(footGate(gate, foot, way), own.narrow(-1, 0, 2)) +
                     gateCentre(hold, gate.foreseen.select(1, foot), before);
   const auto distance = gateDistanceAt(gate, foot, own.narrow(-1, 0, 2));
-  const auto above = before.select(-1, 2) - rise(chart.lengths[joint], flat);
+  const auto above = before.select(-1, 2) - rise(foreseen.lengths.select(1, joint), flat);
   const auto along = unsqueezed(own.select(-1, 2), scaleAt(gate.boneSlope, gate, foot, distance)) +
                      holdAlong(hold, distance) * above;
   return torch::cat({flat, along.unsqueeze(-1)}, -1);
@@ -244,7 +244,7 @@ torch::Tensor chartCoordinates(const BoneChart& chart, const torch::Tensor& pose
   const auto q = intoFrame(frames, pose.index_select(1, own) - pose.index_select(1, parents));
   const auto flat = q.narrow(-1, 0, 2);
   const auto excess =
-      q.narrow(-1, 2, 1) - rise(chart.lengths.index_select(0, own), flat).unsqueeze(-1);
+      q.narrow(-1, 2, 1) - rise(foreseen.lengths.index_select(1, own), flat).unsqueeze(-1);
   return torch::cat(
       {(pose.narrow(1, 0, 1) - foreseen.pose.narrow(1, 0, 1)), torch::cat({flat, excess}, -1)}, 1);
 }
@@ -261,7 +261,8 @@ Charted toChart(const BoneChart& chart, const torch::Tensor& pose, const Foresee
     const auto gated = throughGate(footGate(gate, foot, places.way.select(1, foot)),
                                    flat - gateCentre(hold, gate.foreseen.select(1, foot), before));
     const auto distance = gateDistanceAt(gate, foot, gated.value);
-    const auto excess = footExcess(now, before, chart.lengths[chart.feet[f]], hold, distance);
+    const auto excess =
+        footExcess(now, before, foreseen.lengths.select(1, chart.feet[f]), hold, distance);
     const auto along = squeezed(excess, scaleAt(gate.boneSlope, gate, foot, distance));
     joints[static_cast<size_t>(chart.feet[f])] =
         torch::cat({gated.value, along.value.unsqueeze(-1)}, -1);
@@ -292,7 +293,7 @@ torch::Tensor fromChart(const BoneChart& chart, const torch::Tensor& value,
                                parents.back(), foreseen, ways, gate));
     }
     const auto local = torch::stack(freed, 1), flat = local.narrow(-1, 0, 2);
-    const auto lengths = chart.lengths.index_select(0, indexOf(level, value));
+    const auto lengths = foreseen.lengths.index_select(1, indexOf(level, value));
     const auto height = local.narrow(-1, 2, 1) + rise(lengths, flat).unsqueeze(-1);
     const auto now =
         (torch::stack(parents, 1) + outOfFrame(frames, torch::cat({flat, height}, -1))).unbind(1);

@@ -2,8 +2,8 @@
 // change of variables in which constant bone lengths and planted feet are plain.
 //
 // A joint's bone is seen in a frame F whose third axis is the bone's foreseen direction:
-// q = F' (x_j - x_parent), u = (q1, q2, q3 - sqrt(L^2 - q1^2 - q2^2)). A bone of constant length
-// L has u3 = 0 whatever its direction; rotation and shift keep volumes (log-determinant 0).
+// q = F' (x_j - x_parent), u = (q1, q2, q3 - sqrt(L^2 - q1^2 - q2^2)). A bone of the foreseen
+// length L has u3 = 0 whatever its direction; rotation and shift keep volumes (log-determinant 0).
 //
 // Legs stand. A knee's frame comes from bending the leg, from where the hip is now, so that the
 // foot reaches the place where it is held; q2 lies in the plane of that bend and is 0 for a planted
@@ -19,12 +19,12 @@
 
 namespace marey::moglow {
 
-/// What the chart knows of the body. Lengths in centimetres.
+/// What the chart knows of the body whatever the frame. Lengths in centimetres.
 struct BoneChart {
   std::vector<int64_t> parents;  ///< -1 for joint 0 alone, parents first
   std::vector<int64_t> feet;     ///< contact joints
   std::vector<int64_t> knees;    ///< of each foot, as kneesOf says
-  torch::Tensor lengths;         ///< [J]: reference bone lengths
+  torch::Tensor lengths;         ///< [J]: reference bone lengths, which say what has a direction
   torch::Tensor axes;            ///< [J, 3]: mean bone directions, unit
   torch::Tensor sides;           ///< [J, 3]: unit vectors at right angles to `axes`
 };
@@ -36,10 +36,11 @@ std::vector<int64_t> kneesOf(const std::vector<int64_t>& parents, const std::vec
 
 /// Where a frame is foreseen, from history and control alone; centimetres, one frame of reference.
 struct Foreseen {
-  torch::Tensor pose;    ///< [N, J, 3]: where the body goes if no foot is held
-  torch::Tensor last;    ///< [N, feet, 3]: where the feet stood
-  torch::Tensor places;  ///< [N, feet, 3]: where the held feet stand now
-  torch::Tensor hold;    ///< [N, feet]: 0 (foreseen place) .. 1 (last place)
+  torch::Tensor pose;     ///< [N, J, 3]: where the body goes if no foot is held
+  torch::Tensor last;     ///< [N, feet, 3]: where the feet stood
+  torch::Tensor places;   ///< [N, feet, 3]: where the held feet stand now
+  torch::Tensor hold;     ///< [N, feet]: 0 (foreseen place) .. 1 (last place)
+  torch::Tensor lengths;  ///< [N, J]: of the bones that end in the joints
 };
 
 /// From where feet stood to where they are foreseen without hold, [N, feet, 3].

@@ -49,6 +49,11 @@ void check(const Config& c, const JsonReader& reader) {
   checkRange(reader, "foot_clusters", c.footClusters, 1, 4096);
   checkRange(reader, "net_features", c.netFeatures, 1, c.poseDim * c.baseOrder);
   checkRange(reader, "contacts", c.contacts, 1, 64);
+  checkOneOf<2>(reader, "bone_lengths", c.boneLengths, {"trained", "history"});
+  if (c.boneLengths == "history" && !c.hasMotionBase())
+    throw InputError(reader.place("bone_lengths"),
+                     "'trained' without an observation floor: samples go through the same base",
+                     "'history'");
 }
 
 /// The authors' JSON groups. Dimensions are not in it: they come from the checkpoint.
@@ -113,6 +118,7 @@ Config configFromJson(const Json& value, const std::string& origin) {
     c.netFeatures = reader.optional("net_features", c.netFeatures);
     c.contacts = reader.optional("contacts", c.contacts);
     c.feetPassFlow = reader.optional("feet_pass_flow", c.feetPassFlow);
+    c.boneLengths = reader.optional("bone_lengths", c.boneLengths);
   }
   // Facts that conformance files state beside the configuration.
   for (const char* key : {"batch", "frames", "scale", "split", "channels", "parameters"})
@@ -150,6 +156,7 @@ Json toJson(const Config& c) {
     out["net_features"] = c.netFeatures;
     out["contacts"] = c.contacts;
     out["feet_pass_flow"] = c.feetPassFlow;
+    out["bone_lengths"] = c.boneLengths;
   }
   return out;
 }

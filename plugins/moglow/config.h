@@ -35,6 +35,11 @@ struct Config {
   int footClusters = 200;         ///< clusters of a foot's movement that set its gate
   int netFeatures = 80;           ///< principal components of the history that the nets see
   int contacts = 4;               ///< feet and toes of the skeleton
+  /// Which body densities expect. trained: with the mean bone lengths of the training data.
+  /// history: with those that each frame's history shows, and of its size, so that another actor
+  /// costs no more than moving otherwise. Samples keep the trained lengths always: those of their
+  /// own past would drift.
+  std::string boneLengths = "trained";
 
   /// Standard deviation of the noise through which poses are observed, in every direction of pose
   /// space; 0: none, as published. With it training adds noise to the poses that are to be
@@ -49,6 +54,12 @@ struct Config {
   bool based() const { return poseBase != "none"; }
   /// Whether samples go through a base of their own ("motion" beside "base").
   bool hasMotionBase() const { return based() && observationFloorMm > 0.0; }
+  /// Of the base that samples go through.
+  Config ofMotionBase() const {
+    Config out = *this;
+    out.boneLengths = "trained";
+    return out;
+  }
   int passedChannels() const { return feetPassFlow ? contacts : 0; }  ///< two per foot
   int conditioning() const {
     if (poseBase == "kinematic")

@@ -35,6 +35,7 @@ struct RowForesight {
   std::vector<double>
       predicted;  ///< [D]: standardised pose (linear), chart coordinates (kinematic)
   std::vector<Eigen::Vector3d> pose;  ///< kinematic: joints where no foot is held, cm
+  std::vector<double> lengths;        ///< kinematic: [J], of the bones that end in the joints, cm
   std::vector<FootForesight> feet;
   size_t regime = 0;
 };

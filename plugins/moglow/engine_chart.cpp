@@ -104,10 +104,10 @@ Mat3 EngineChart::frameAlong(int joint, const Vec3& n) const {
 }
 
 /// The frame of a knee of a leg that is bent so that its foot reaches a place.
-Mat3 EngineChart::kneeFrame(int knee, int foot, const Vec3& hip, const Vec3& place,
-                            const Vec3& foreseenThigh) const {
-  const double thigh = m_body.lengths[static_cast<size_t>(knee)],
-               shin = m_body.lengths[static_cast<size_t>(foot)],
+Mat3 EngineChart::kneeFrame(const RowForesight& seen, int knee, int foot, const Vec3& hip,
+                            const Vec3& place, const Vec3& foreseenThigh) const {
+  const double thigh = seen.lengths[static_cast<size_t>(knee)],
+               shin = seen.lengths[static_cast<size_t>(foot)],
                far = std::max((place - hip).norm(), 1e-3);
   const Vec3 axis = (place - hip) / far;
   const double d =
@@ -132,8 +132,8 @@ Mat3 EngineChart::frameAt(const RowForesight& seen, int joint,
     return frameAlong(joint, m_body.lengths[own] < kShortest ? m_body.axes[own] : unit(bone));
   const Vec3& place = seen.feet[static_cast<size_t>(limb.foot)].place;
   if (limb.knee)
-    return kneeFrame(joint, m_body.feet[static_cast<size_t>(limb.foot)], present[parent], place,
-                     bone);
+    return kneeFrame(seen, joint, m_body.feet[static_cast<size_t>(limb.foot)], present[parent],
+                     place, bone);
   return frameAlong(joint, unit(place - present[parent]));
 }
 
@@ -150,7 +150,7 @@ double EngineChart::gateFoot(const RowForesight& seen, size_t foot, std::span<co
   const auto [gated, gateLogDet] =
       throughGate(f.radii, gateShift(f.skew, way), now.head<2>() - gateCentre(f, before));
   const double distance = gateRadius(f.radii, gated.norm()),
-               height = rise(m_body.lengths[own], now.head<2>()),
+               height = rise(seen.lengths[own], now.head<2>()),
                excess = now.z() - height - holdAlong(f.hold, distance) * (before.z() - height);
   const auto [along, alongLogDet] = squeezed(excess, scaleAt(f.boneSlope, f, distance));
   value[3 * own] = gated.x();
@@ -170,7 +170,7 @@ double EngineChart::toChart(const RowForesight& seen, std::span<const Vec3> pose
   for (size_t j = 1; j < pose.size(); ++j) {
     const Mat3 frame = frameAt(seen, static_cast<int>(j), pose);
     Vec3 q = frame.transpose() * (pose[j] - pose[static_cast<size_t>(m_body.parents[j])]);
-    q.z() -= rise(m_body.lengths[j], q.head<2>());
+    q.z() -= rise(seen.lengths[j], q.head<2>());
     Eigen::Map<Vec3>(value.data() + 3 * j) = q;
   }
   double logDet = 0.0;
@@ -196,7 +196,7 @@ Vec3 EngineChart::released(const RowForesight& seen, int joint, std::span<const 
   const Vec2 flat =
       backThroughGate(f.radii, gateShift(f.skew, way), q.head<2>()) + gateCentre(f, before);
   const double distance = gateRadius(f.radii, q.head<2>().norm()),
-               above = before.z() - rise(m_body.lengths[own], flat);
+               above = before.z() - rise(seen.lengths[own], flat);
   return {
       flat.x(), flat.y(),
       unsqueezed(q.z(), scaleAt(f.boneSlope, f, distance)) + holdAlong(f.hold, distance) * above};
@@ -210,7 +210,7 @@ void EngineChart::fromChart(const RowForesight& seen, std::span<const double> va
     const Vec3& parent = pose[static_cast<size_t>(m_body.parents[j])];
     const Mat3 frame = frameAt(seen, joint, pose);
     Vec3 q = released(seen, joint, value, frame, parent);
-    q.z() += rise(m_body.lengths[j], q.head<2>());
+    q.z() += rise(seen.lengths[j], q.head<2>());
     pose[j] = parent + frame * q;
   }
 }

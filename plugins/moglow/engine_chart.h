@@ -14,11 +14,11 @@ namespace marey::moglow {
 
 class EngineChart {
  public:
-  /// What the chart knows of the body, per joint.
+  /// What the chart knows of the body whatever the frame, per joint.
   struct Body {
     std::vector<int> parents;  ///< -1 for joint 0 alone, parents first
     std::vector<int> feet;
-    std::vector<double> lengths;
+    std::vector<double> lengths;  ///< reference ones, which say what has a direction
     std::vector<Eigen::Vector3d> axes, sides;
   };
   explicit EngineChart(Body body);
@@ -37,8 +37,9 @@ class EngineChart {
   };
   Eigen::Matrix3d frameAt(const RowForesight& seen, int joint,
                           std::span<const Eigen::Vector3d> present) const;
-  Eigen::Matrix3d kneeFrame(int knee, int foot, const Eigen::Vector3d& hip,
-                            const Eigen::Vector3d& place, const Eigen::Vector3d& thigh) const;
+  Eigen::Matrix3d kneeFrame(const RowForesight& seen, int knee, int foot,
+                            const Eigen::Vector3d& hip, const Eigen::Vector3d& place,
+                            const Eigen::Vector3d& thigh) const;
   Eigen::Matrix3d frameAlong(int joint, const Eigen::Vector3d& direction) const;
   double gateFoot(const RowForesight& seen, size_t foot, std::span<const Eigen::Vector3d> pose,
                   std::span<double> value) const;

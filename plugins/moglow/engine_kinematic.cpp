@@ -47,6 +47,19 @@ std::vector<size_t> feetFirst(const std::vector<int>& feet, size_t poseDim) {
   return out;
 }
 
+/// What was foreseen for a body of the trained size, for one of another. How far things stray from
+/// it stays as it is: a floor in millimetres does not shrink with a body.
+void resize(RowForesight& seen, double size) {
+  for (double& value : seen.predicted) value *= size;
+  for (Vec3& joint : seen.pose) joint *= size;
+  for (FootForesight& foot : seen.feet) {
+    foot.last *= size;
+    foot.place *= size;
+    foot.foreseen *= size;
+    foot.knee *= size;
+  }
+}
+
 std::vector<double> zerosFor(const nn::RowMatrix& matrix) {
   return std::vector<double>(static_cast<size_t>(matrix.paddedColumns()), 0.0);
 }
@@ -74,6 +87,7 @@ EngineKinematic::EngineKinematic(const Config& c, const BodyFacts& body, const B
     : EngineBase(c),
       m_config(c),
       m_joints(body.parents.size()),
+      m_parents(body.parents),
       m_order(feetFirst(body.feet, 3 * body.parents.size())),
       m_chart(chartOf(body, stored)) {
   const auto floors = stored.numbers("foot_floor"), reaches = stored.numbers("reach");
@@ -95,6 +109,8 @@ EngineKinematic::EngineKinematic(const Config& c, const BodyFacts& body, const B
   m_controlMean = stored.numbers("control_mean");
   m_controlStd = stored.numbers("control_std");
   m_predictable = stored.numbers("predictable");
+  m_lengths = stored.numbers("bone_lengths");
+  m_allLengths = std::accumulate(m_lengths.begin(), m_lengths.end(), 0.0);
   m_foreseenMean = stored.numbers("foreseen_mean");
   m_foreseenBias = stored.numbers("foreseen_bias");
   m_foreseenWeight = stored.matrix("foreseen_weight");
@@ -181,6 +197,8 @@ void EngineKinematic::foreseePose(const Past& past, std::span<const double> rich
   }
   for (Vec3& joint : seen.pose) joint += pull;
   for (size_t i = 0; i < m_predictable.size(); ++i) seen.predicted[i] *= m_predictable[i];
+  seen.lengths = past.lengths;
+  resize(seen, past.size);
 }
 
 void EngineKinematic::foreseeFoot(const Past& past, const Foot& foot, const RowForesight& seen,

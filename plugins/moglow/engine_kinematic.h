@@ -14,10 +14,12 @@ class EngineKinematic : public EngineBase {
   EngineKinematic(const Config& config, const BodyFacts& body, const BaseTensors& stored);
 
  private:
-  /// Past frames in the present root frame, newest first; cm, rad.
+  /// Past frames in the present root frame, newest first; cm, rad, shrunk to the trained body.
   struct Past {
     std::vector<std::vector<Eigen::Vector3d>> poses;  ///< [order][J]
     std::vector<double> control;                      ///< [3 * order]
+    std::vector<double> lengths;                      ///< [J], cm, not shrunk
+    double size = 1.0;
     const Eigen::Vector3d& at(size_t lag, int joint) const {
       return poses[lag][static_cast<size_t>(joint)];
     }
@@ -52,6 +54,7 @@ class EngineKinematic : public EngineBase {
   void readGaits(const BaseTensors& stored);
   static Centres centresOf(const std::vector<double>& rows, size_t features);
   Past pastOf(const float* history, const float* control) const;
+  void meetBody(Past& past) const;
   std::vector<double> regressors(const Past& past) const;
   std::vector<double> footFeatures(const Past& past, const Foot& foot) const;
   std::vector<double> regimeFeatures(const Past& past) const;
@@ -64,9 +67,9 @@ class EngineKinematic : public EngineBase {
   Config m_config;
   size_t m_joints;
   std::vector<Foot> m_feet;
-  std::vector<int> m_contacts;
+  std::vector<int> m_contacts, m_parents;
   std::vector<size_t> m_order;  ///< [D]: feet's held coordinates first
-  std::vector<double> m_poseMean, m_poseStd, m_controlMean, m_controlStd, m_predictable;
+  std::vector<double> m_poseMean, m_poseStd, m_controlMean, m_controlStd, m_predictable, m_lengths;
   EngineChart m_chart;
   std::vector<double> m_foreseenMean, m_foreseenBias, m_richMean, m_netMean, m_speedScale,
       m_controlScale, m_factorLogDet;
@@ -74,7 +77,7 @@ class EngineKinematic : public EngineBase {
   std::vector<nn::RowMatrix> m_richWeight, m_factor, m_factorInverse;  ///< per regime
   Centres m_footCentres, m_regimeCentres;
   std::vector<Gait> m_gaits;
-  double m_slowMovement, m_unitsLogDet;
+  double m_slowMovement, m_unitsLogDet, m_allLengths;
 };
 
 }  // namespace marey::moglow

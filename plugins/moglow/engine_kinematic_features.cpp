@@ -61,7 +61,29 @@ EngineKinematic::Past EngineKinematic::pastOf(const float* history, const float*
   }
   for (size_t lag = 0; lag < order; ++lag)
     for (size_t i = 0; i < 3; ++i) out.control.push_back(controlAt(tau - lag, i));
+  meetBody(out);
   return out;
+}
+
+/// Fills in the lengths and the size of the body, and shrinks the past to the trained one.
+void EngineKinematic::meetBody(Past& past) const {
+  past.lengths = m_lengths;
+  if (m_config.boneLengths != "history") return;
+  double all = 0.0;
+  for (size_t j = 0; j < m_joints; ++j) {
+    const auto parent = static_cast<size_t>(std::max(m_parents[j], 0));
+    double sum = 0.0;
+    for (const auto& joints : past.poses) sum += (joints[j] - joints[parent]).norm();
+    const double mean = sum / static_cast<double>(past.poses.size());
+    past.lengths[j] = m_lengths[j] < kShortest ? mean : std::max(mean, kShortest);
+    all += past.lengths[j];
+  }
+  if (m_allLengths < kShortest) return;
+  past.size = all / m_allLengths;
+  for (auto& joints : past.poses)
+    for (Vec3& joint : joints) joint /= past.size;
+  for (size_t i = 0; i < past.control.size(); ++i)
+    if (i % 3 < 2) past.control[i] /= past.size;
 }
 
 std::vector<double> EngineKinematic::regressors(const Past& past) const {

@@ -70,17 +70,19 @@ std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
   }
   checkFlow(config, file, origin);
   auto base = loadBase(config, body, file, "base", origin);
-  auto motion = config.hasMotionBase() ? loadBase(config, body, file, "motion", origin) : nullptr;
+  auto motion = config.hasMotionBase()
+                    ? loadBase(config.ofMotionBase(), body, file, "motion", origin)
+                    : nullptr;
   const auto precision = options.weights == WeightPrecision::BFloat16 ? nn::Precision::BFloat16
                                                                       : nn::Precision::Float32;
   return std::make_unique<EngineModel>(completed(std::move(info), config), config, std::move(file),
                                        std::move(base), std::move(motion), precision, origin);
 }
 
-/// Whether a configuration says its observation floor, be it zero.
-bool statesFloor(const Json& json) {
+/// Whether a configuration says something itself, be it what would be assumed.
+bool states(const Json& json, const char* key) {
   const Json& model = json.is_object() && json.contains("model") ? json.at("model") : json;
-  return model.is_object() && model.contains("observation_floor_mm");
+  return model.is_object() && model.contains(key);
 }
 
 Json example() {
@@ -116,7 +118,11 @@ Trainee makeTrainee(const Json& modelConfig, const std::string& origin, const Tr
   config.poseDim = data.poseDim;
   config.controlDim = data.controlDim;
   requirePoses(config, data.features, origin);
-  if (!statesFloor(modelConfig)) config.observationFloorMm = kObservationFloorMm;
+  if (!states(modelConfig, "observation_floor_mm")) config.observationFloorMm = kObservationFloorMm;
+  // Stored models that say nothing were fitted to trained lengths; new ones follow the body.
+  if (!states(modelConfig, "bone_lengths") && config.poseBase == "kinematic" &&
+      config.hasMotionBase())
+    config.boneLengths = "history";
   const BodyFacts body = bodyFacts(data.skeleton.get(), data.standardiser);
   config.contacts = 2 * static_cast<int>(body.feet.size());
   return {std::make_shared<Net>(config, body, seed), toJson(config)};

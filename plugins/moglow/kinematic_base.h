@@ -9,6 +9,12 @@
 //   3. The rest is a ridge regression with a covariance per regime (clusters of the movement of
 //      feet and control), shrunk towards the common one.
 //
+// Of which body it speaks is a property of the base (Config::boneLengths). With lengths from the
+// history, every bone is foreseen as long as it was on average in the frames of the past, the past
+// is shrunk to the size of the trained body (the sum of its bones), and what is foreseen of that
+// one is made as large as the body at hand. How far a pose strays from what is foreseen stays in
+// centimetres: the observation floor is that of a camera, not of a body.
+//
 // Everything depends on history and control alone, so the layer is exactly invertible and its
 // log-determinant is known. Inside, lengths are centimetres.
 #pragma once
@@ -27,14 +33,17 @@ class KinematicBase : public PoseBase {
   torch::Tensor toPose(const torch::Tensor& innovation, const Foresight& foresight) const override;
   void fit(const torch::Tensor& poses, const BaseInput& input, const torch::Tensor& noise) override;
 
-  /// Past frames of movement, newest first, in the present root frame.
+  /// Past frames of movement, newest first, in the present root frame, shrunk to the trained body.
   struct Past {
     torch::Tensor poses;    ///< [N, order, J, 3], cm
     torch::Tensor control;  ///< [N, 3 * order], newest first; cm, cm, rad
+    torch::Tensor lengths;  ///< [N, J], cm: that this frame's bones are foreseen with, not shrunk
+    torch::Tensor size;     ///< [N, 1]: of the body, 1 for the trained one
   };
 
  private:
   Past pastOf(const BaseInput& input) const;
+  Past metBy(const torch::Tensor& poses, const torch::Tensor& control) const;
   torch::Tensor toCentimetres(const torch::Tensor& pose) const;  ///< [N, D] -> [N, J, 3]
   torch::Tensor regressors(const Past& past) const;
   torch::Tensor richRegressors(const Past& past) const;
@@ -48,7 +57,8 @@ class KinematicBase : public PoseBase {
   Foreseen foreseenOn(const Past& past, const torch::Tensor& clusters) const;
   FootGate gateOf(const Past& past, const torch::Tensor& clusters,
                   const torch::Tensor& predicted) const;
-  torch::Tensor predictedChart(const torch::Tensor& rich, const torch::Tensor& regime) const;
+  torch::Tensor predictedChart(const Past& past, const torch::Tensor& rich,
+                               const torch::Tensor& regime) const;
   torch::Tensor footScales(const Past& past) const;
   BoneChart chart() const;
   using Parts = std::vector<torch::Tensor>;  ///< of a Foresight

@@ -150,17 +150,18 @@ void KinematicBase::fitLimits(const torch::Tensor& pose, const Past& past) {
   const auto feet = torch::tensor(m_feet, torch::kInt64).to(pose.device());
   const auto movement =
       (past.poses.select(1, 0) - past.poses.select(1, 1)).index_select(1, feet).norm(2, -1);
+  const auto trained = pose / past.size.unsqueeze(-1);
   m_slowMovement.copy_((2.0 * quantileOf(movement, kSlowest)).clamp(0.05, 0.3));
   for (size_t f = 0; f < m_feet.size(); ++f) {
-    const auto foot = pose.select(1, m_feet[f]);
+    const auto foot = trained.select(1, m_feet[f]);
     m_footFloor[static_cast<int64_t>(f)] = quantileOf(foot.select(1, 1), kLowest);
     m_reach[static_cast<int64_t>(f)] =
-        quantileOf((foot - pose.select(1, m_hips[f])).norm(2, -1), kReached);
+        quantileOf((foot - trained.select(1, m_hips[f])).norm(2, -1), kReached);
   }
 }
 
 void KinematicBase::fitForeseen(const torch::Tensor& pose, const Past& past) {
-  const auto target = (pose - past.poses.select(1, 0)).flatten(1);
+  const auto target = (pose / past.size.unsqueeze(-1) - past.poses.select(1, 0)).flatten(1);
   const auto features = regressors(past);
   const auto mean = features.to(torch::kFloat64).mean(0),
              targetMean = target.to(torch::kFloat64).mean(0);
@@ -238,10 +239,10 @@ void KinematicBase::fitLegs(const torch::Tensor& pose, const Footing& f, double 
                         .index_select(1, torch::tensor(knees, torch::kInt64).to(pose.device()))
                         .select(-1, 1);
   const auto offset = (bent - (1.0 - firmness(f.foreseen.hold)) * f.gate.knee).abs();
-  const auto excess =
-      footExcess(f.places.now, f.places.before,
-                 m_lengths.index_select(0, torch::tensor(m_feet, torch::kInt64).to(pose.device())),
-                 f.foreseen.hold, distance);
+  const auto excess = footExcess(
+      f.places.now, f.places.before,
+      f.foreseen.lengths.index_select(1, torch::tensor(m_feet, torch::kInt64).to(pose.device())),
+      f.foreseen.hold, distance);
   for (int64_t k = 0; k < m_config.footClusters; ++k) {
     const auto rows = clusters.eq(k);
     if (!rows.any().item<bool>()) continue;
@@ -261,6 +262,7 @@ void KinematicBase::fitLegs(const torch::Tensor& pose, const Footing& f, double 
 }
 
 void KinematicBase::fitRegimes(const torch::Tensor& local, const Past& past) {
+  const auto target = local / past.size;
   const auto rich = richRegressors(past);
   const auto keys = regimeFeatures(past);
   m_regimeCentres.copy_(clusterCentres(keys, m_config.regimes));
@@ -278,7 +280,7 @@ void KinematicBase::fitRegimes(const torch::Tensor& local, const Past& past) {
       const auto x = torch::cat({centred, torch::ones({part.size(0), 1}, centred.options())}, 1)
                          .to(torch::kFloat64);
       grams[k] += x.t().matmul(x).cpu();
-      crosses[k] += x.t().matmul(local.index_select(0, part).to(torch::kFloat64)).cpu();
+      crosses[k] += x.t().matmul(target.index_select(0, part).to(torch::kFloat64)).cpu();
     }
   }
   const auto diagonal = [&](double strength, double intercept) {
@@ -348,8 +350,8 @@ void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input,
                         const torch::Tensor& noise) {
   const torch::NoGradGuard guard;
   const auto motion = toCentimetres(poses);
-  const Past past = pastOf(input);
   fitChart(motion);
+  const Past past = pastOf(input);
   fitLimits(motion, past);
   fitForeseen(motion, past);
   fitHold(motion, past);
@@ -366,7 +368,7 @@ void KinematicBase::fit(const torch::Tensor& poses, const BaseInput& input,
   const Foreseen foreseen = foreseenOn(past, clusters);
   fitRegimes(chartCoordinates(chart(), pose, foreseen).flatten(1), past);
   const auto regime = regimeOf(past);
-  const auto predicted = predictedChart(richRegressors(past), regime);
+  const auto predicted = predictedChart(past, richRegressors(past), regime);
   const Footing footing{clusters, foreseen, gateOf(past, clusters, predicted),
                         footPlaces(chart(), pose, foreseen), footScales(past)};
   fitGate(footing, floor);

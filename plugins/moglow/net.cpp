@@ -49,7 +49,8 @@ Net::Net(const Config& config, const BodyFacts& body, uint64_t seed) : m_config(
   m_flow = register_module("flow", std::make_shared<nn::Flow>(flowSpec(config), generator));
   m_base = makePoseBase(config, body);
   if (m_base) register_module("base", m_base);
-  if (config.hasMotionBase()) m_motion = register_module("motion", makePoseBase(config, body));
+  if (config.hasMotionBase())
+    m_motion = register_module("motion", makePoseBase(config.ofMotionBase(), body));
 }
 
 Net::Context Net::contextOf(const torch::Tensor& poses, const torch::Tensor& controls) const {

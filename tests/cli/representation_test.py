@@ -1,7 +1,9 @@
 """A model of joint rotations through every command: prepare, train, sample, score, report, export."""
 import json
 import math
+import pathlib
 import re
+import struct
 
 from support import Case, main, marey, read_tensors
 
@@ -33,22 +35,29 @@ class JointExpmap(Case):
         self.assertEqual(info["layout"], "joint-expmap")
         self.assertEqual(info["likelihood_unit"], "nats per frame, cm and rad")
 
-        clips = self.sampled(model)
+        clips = self.sampled(model, walker)
         self.scored(model, walker, data)
         self.reported(model, walker)
         # Bones are exact, whatever an all but untrained model says.
         analysed = self.run_json("analyze", *clips)
         self.assertLess(analysed["bone_length_rmse_cm"], 1e-4)
 
-    def sampled(self, model):
+    def sampled(self, model, walker):
+        """BVH files whose rotations are the model's own, about the joints of the data."""
         out = self.dir / "samples"
         made = self.run_json("sample", model, "--path", "preset:circle", "-n", 2, "--seconds", 2,
                              "--out", out, "--format", "bvh")
-        for path in sorted(out.glob("*.bvh")):
-            recipe = json.loads(path.with_suffix(".json").read_text()) if path.with_suffix(
-                ".json").exists() else {}
-            self.assertNotIn("residual", json.dumps(recipe), "rotations were fitted")
-        return sorted(out.glob("*.bvh")) or made["clips"]
+        natural = bvh_offsets(walker / "walker_0000.bvh")
+        for clip in made["clips"]:
+            recipe = json.loads(pathlib.Path(clip + ".recipe.json").read_text())
+            self.assertNotIn("fit", recipe, "rotations were fitted to positions")
+            offsets = bvh_offsets(pathlib.Path(clip))
+            self.assertEqual(set(offsets), set(natural))
+            for joint, offset in offsets.items():
+                if joint != "Hips":
+                    for a, b in zip(offset, natural[joint]):
+                        self.assertAlmostEqual(a, b, delta=2e-4, msg=joint)
+        return made["clips"]
 
     def scored(self, model, walker, data):
         clip = walker / "walker_0000.bvh"
@@ -123,7 +132,6 @@ class JointExpmap(Case):
 
 
 def read_floats(path, name):
-    import struct
     _, _, content = read_tensors(path)[1][name]
     return struct.unpack(f"<{len(content) // 4}f", content)
 

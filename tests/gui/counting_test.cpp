@@ -180,11 +180,12 @@ TEST_F(Counting, DensitiesOfFourJointsStandOnTheirAxisWhereTheWindowOpens) {
 TEST_F(Counting, TheHeaderOfTheMotionsIsReadableWhereTheWindowOpens) {
   const auto* header = child<QTreeView>(*m_window->showPanel("library"), "motionTree")->header();
   for (int column = 1; column < header->count(); ++column)
-    if (!header->isSectionHidden(column))
+    if (!header->isSectionHidden(column)) {
       EXPECT_GE(header->sectionSize(column) - 8,
                 header->fontMetrics().horizontalAdvance(
                     header->model()->headerData(column, Qt::Horizontal).toString()))
           << column;
+    }
   EXPECT_GE(header->sectionSize(0), 100) << "nothing is left for names";
 }
 

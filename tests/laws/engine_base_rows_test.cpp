@@ -37,7 +37,8 @@ struct Bases {
   std::unique_ptr<const EngineBase> engine;
   torch::Tensor history, control, pose;  ///< float32
 
-  explicit Bases(const std::string& name)
+  /// Rows are of a body that is `size` times as large as the one that the model makes.
+  explicit Bases(const std::string& name, float size = 1.f)
       : file(readTensorFile(MAREY_SOURCE_DIR "/resources/" + name)),
         info(loadCommon(file, name)),
         config(configFromJson(info.config, name)) {
@@ -50,11 +51,11 @@ struct Bases {
     loadWeights(holder, own, name);
     plain->to(torch::kFloat64);
     engine = makeEngineBase(config, body, file, "base");
-    makeRows(name);
+    makeRows(name, size);
   }
 
   /// Frames of motions that the model makes, each with those before it.
-  void makeRows(const std::string& name) {
+  void makeRows(const std::string& name, float size) {
     const auto model = family().load(file, name, {});
     constexpr int kMotions = 10;
     const long d = info.poseDim, c = info.controlDim, tau = config.tau,
@@ -73,7 +74,7 @@ struct Bases {
       auto metres = standard * units(s.controlStd) + units(s.controlMean);
       std::copy_n(metres.contiguous().data_ptr<float>(), control.size(), control.data());
       Matrix pose = model->rollout()->sampleFrame(state, control, latent);
-      frames.push_back((torch::from_blob(pose.data(), {kMotions, d}).clone() - units(s.poseMean)) /
+      frames.push_back((size * torch::from_blob(pose.data(), {kMotions, d}) - units(s.poseMean)) /
                        units(s.poseStd));
       controls.push_back(standard.flatten(1));
     }
@@ -118,7 +119,7 @@ class BaseRows : public testing::TestWithParam<std::string> {};
 
 TEST_P(BaseRows, AreThoseOfThePlainBaseInDoublePrecision) {
   const torch::NoGradGuard guard;
-  const Bases b(GetParam());
+  const Bases b(GetParam(), 1.1f);
   const Foresight truth = b.truth();
   auto features = torch::empty({b.history.size(0), truth.features.size(1)});
   const auto seen = b.foresee(features);

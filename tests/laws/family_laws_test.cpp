@@ -8,6 +8,8 @@
 #include "base/error.h"
 #include "model/sampler.h"
 #include "model/scorer.h"
+#include "motion/representation/representation.h"
+#include "motion/walker.h"
 #include "nn/team.h"
 
 namespace marey {
@@ -265,6 +267,29 @@ TEST_P(FamilyLaws, LeavesWhatIsKnownAsItIs) {
   // What is hidden is of no effect.
   request.poses.rightCols(6).setConstant(1e3F);
   EXPECT_TRUE(one->completion()->complete(request, [] {}) == filled);
+}
+
+TEST_P(FamilyLaws, WorksInEveryRepresentation) {
+  for (const Representation& poses : representations()) {
+    SCOPED_TRACE(poses.name);
+    Progress progress;
+    PrepareOptions options;
+    options.features.layout = poses.name;
+    const DataSet set = prepareDataSet(walks(2, 4.0, 2), {}, options, progress);
+    const test::TempFolder folder;
+    TrainRequest request = requestOf(family(), folder / "run");
+    if (request.steps) request.steps = 2;
+    const auto made = train(set, request, allFamilies(), progress);
+    const auto one = loadModel(made.last.string(), allFamilies());
+    EXPECT_EQ(one->info().features.layout, poses.name);
+    EXPECT_EQ(one->info().poseDim, poses.width(*walkerSkeleton()));
+    const Clip clip = sampleClips(*one, turning(1), progress).front();
+    EXPECT_EQ(clip.transforms.has_value(), poses.rotations);
+    EXPECT_NO_THROW(validate(clip));
+    const auto score = scoreClips(*one, walks(1, 3.0, 7), false, progress).front();
+    EXPECT_EQ(score.unit, "nats per frame, " + poses.shownUnits);
+    EXPECT_EQ(std::isfinite(score.meanNatsPerFrame()), one->density() != nullptr);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, FamilyLaws, testing::ValuesIn(allFamilies()),

@@ -99,7 +99,8 @@ struct Leg {
     foreseen = {.pose = pose + 0.5,
                 .last = last,
                 .places = last + (1.0 - hold) * 0.5,
-                .hold = torch::full({1, 1}, hold, torch::kFloat64)};
+                .hold = torch::full({1, 1}, hold, torch::kFloat64),
+                .lengths = chart.lengths.unsqueeze(0)};
     const auto ones = torch::ones({1, 1}, torch::kFloat64);
     gate = {.foreseen = torch::zeros({1, 1, 2}, torch::kFloat64),
             .knee = 0.1 * ones,
@@ -148,6 +149,80 @@ TEST(StandingLeg, LogDeterminantIsThatOfTheJacobian) {
     const double expected = std::get<1>(torch::slogdet(torch::stack(rows))).item<double>();
     EXPECT_NEAR(charted.logDet.item<double>(), expected, 1e-8) << hold;
   }
+}
+
+/// The body of one row, foreseen for as many as there are sizes, each with bones so much longer.
+struct Bodies {
+  Leg one{0.7};
+  Foreseen foreseen;
+  FootGate gate;
+
+  explicit Bodies(const std::vector<double>& sizes) {
+    const auto rows = static_cast<int64_t>(sizes.size());
+    const auto many = [&](const Tensor& t) {
+      std::vector<int64_t> shape(static_cast<size_t>(t.dim()), 1);
+      shape[0] = rows;
+      return t.repeat(at::IntArrayRef(shape));
+    };
+    const auto& f = one.foreseen;
+    foreseen = {.pose = many(f.pose),
+                .last = many(f.last),
+                .places = many(f.places),
+                .hold = many(f.hold),
+                .lengths = f.lengths * torch::tensor(sizes, torch::kFloat64).unsqueeze(1)};
+    gate = {.foreseen = many(one.gate.foreseen),
+            .knee = many(one.gate.knee),
+            .skew = many(one.gate.skew),
+            .radii = many(one.gate.radii),
+            .kneeSlope = many(one.gate.kneeSlope),
+            .boneSlope = many(one.gate.boneSlope),
+            .slack = many(one.gate.slack)};
+  }
+};
+
+TEST(StandingLeg, EveryRowStandsOnBonesOfItsOwnLengths) {
+  const std::vector<double> sizes{1.0, 1.05, 0.9, 1.3};
+  const Bodies bodies(sizes);
+  const auto rows = static_cast<int64_t>(sizes.size());
+  // Nothing strays: every bone but the held foot's, which takes up what its hold asks for, is as
+  // long as foreseen.
+  const auto still = fromChart(bodies.one.chart, torch::zeros({rows, 5, 3}, torch::kFloat64),
+                               bodies.foreseen, bodies.gate);
+  for (int64_t i = 0; i < rows; ++i)
+    for (const auto& [joint, length] : {std::pair{1, 10.0}, {2, 40.0}, {4, 10.0}})
+      EXPECT_NEAR((still[i][joint] - still[i][joint - 1]).norm().item<double>(),
+                  sizes[static_cast<size_t>(i)] * length, 1e-9)
+          << "row " << i << ", joint " << joint;
+  // The thigh of a longer leg bends further for the same place of the foot.
+  const auto height = [&](int64_t i) { return still[i][2][2].item<double>(); };
+  EXPECT_GT(height(1), height(0) + 1.0);
+  EXPECT_LT(height(2), height(0) - 1.0);
+  const auto pose = bodies.one.pose.repeat({rows, 1, 1}) + 0.3 * normal({rows, 5, 3}, 12);
+  const auto value = toChart(bodies.one.chart, pose, bodies.foreseen, bodies.gate).value;
+  const auto back = fromChart(bodies.one.chart, value, bodies.foreseen, bodies.gate);
+  EXPECT_LT((back - pose).abs().max().item<double>(), 1e-9);
+}
+
+TEST(StandingLeg, LogDeterminantsOfUnlikeBodiesAreThoseOfFiniteDifferences) {
+  const std::vector<double> sizes{1.0, 1.05, 0.9};
+  const Bodies bodies(sizes);
+  const auto rows = static_cast<int64_t>(sizes.size());
+  const auto pose = bodies.one.pose.repeat({rows, 1, 1}) + 0.2 * normal({rows, 5, 3}, 13);
+  const auto chartOf = [&](const Tensor& p) {
+    return toChart(bodies.one.chart, p, bodies.foreseen, bodies.gate);
+  };
+  constexpr double kStep = 1e-5;
+  std::vector<Tensor> columns;
+  for (int64_t i = 0; i < 15; ++i) {
+    auto step = torch::zeros({15}, torch::kFloat64);
+    step[i] = kStep;
+    const auto by = step.view({1, 5, 3});
+    columns.push_back((chartOf(pose + by).value - chartOf(pose - by).value).flatten(1) /
+                      (2.0 * kStep));
+  }
+  const auto numeric = std::get<1>(torch::slogdet(torch::stack(columns, 2)));
+  EXPECT_LT((chartOf(pose).logDet - numeric).abs().max().item<double>(), 1e-5);
+  EXPECT_GT((numeric[1] - numeric[2]).abs().item<double>(), 1e-3) << "lengths say nothing";
 }
 
 TEST(StandingLeg, KneesAreThoseOfLegsThatBend) {

@@ -85,6 +85,25 @@ TEST_F(ShippedWalker, ABoneAMillimetreLongerCostsTensOfNatsAtMost) {
   }
 }
 
+TEST_F(ShippedWalker, AnotherActorCostsTensOfNats) {
+  // Everything as large as it is times a factor, the way that it went included.
+  const Clip clip = walker();
+  const double natural = nats(clip);
+  for (const float size : {1.05f, 0.95f, 1.2f, 0.8f}) {
+    Clip other = clip;
+    for (int t = 0; t < other.frameCount(); ++t)
+      for (Vec3& joint : other.frame(t)) joint *= size;
+    EXPECT_LT(std::abs(natural - nats(other)), 100.0) << size;
+  }
+}
+
+TEST_F(ShippedWalker, LimbsOfOtherProportionsCostTensOfNats) {
+  const Clip clip = walker();
+  const double natural = nats(clip);
+  for (const char* joint : {"LeftForeArm", "LeftLeg", "Head"})
+    EXPECT_LT(natural - nats(withLongerBone(clip, jointNamed(clip, joint), 0.01f)), 100.0) << joint;
+}
+
 TEST_F(ShippedWalker, TheWorstFrameIsThatOfAFaultThatCanBeSeen) {
   Clip clip = walker();
   const int frame = 90, hand = jointNamed(clip, "LeftHand");

@@ -14,7 +14,7 @@ namespace {
 /// The field's 21 joints as a person who faces +Z, left on +X, walks 1 m/s at 30 fps with swinging
 /// feet; metres.
 Clip walker(int frames = 150) {
-  Skeleton s = moglowSkeleton();
+  Skeleton s = locomotionSkeleton();
   const std::vector<Vec3> rest = {{0, 0.95f, 0},     {0.1f, 0.9f, 0},      {0.1f, 0.5f, 0},
                                   {0.1f, 0.08f, 0},  {0.1f, 0.02f, 0.14f}, {-0.1f, 0.9f, 0},
                                   {-0.1f, 0.5f, 0},  {-0.1f, 0.08f, 0},    {-0.1f, 0.02f, 0.14f},

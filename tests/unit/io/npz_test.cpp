@@ -65,7 +65,7 @@ TEST(FieldNpz, TheFieldsSpeedCheckHolds) {
 }
 
 TEST(FieldNpz, TheFirstLimbIsTheLeftLegOnPlusX) {
-  const Skeleton s = moglowSkeleton();
+  const Skeleton s = locomotionSkeleton();
   validate(s, "moglow");
   const SkeletonRoles roles = rolesOf(s);
   EXPECT_EQ(roles.leftHip, 1);

@@ -59,12 +59,12 @@ TEST(LinearGaussian, IsStoredWhole) {
   const auto model = fitLinearGaussian({wave(500, 2)}, 2, 0.01);
   TensorFile file;
   store(model, file);
-  const auto again = loadLinearGaussian(file, 1, 1, 0.01, "file");
+  const auto again = loadLinearGaussian(file, 1, 1, 0.01, {}, "file");
   ASSERT_TRUE(again);
   EXPECT_EQ(again->order, 2);
   EXPECT_EQ(logDensity(*again, wave(50, 3), 2), logDensity(model, wave(50, 3), 2));
-  EXPECT_EQ(loadLinearGaussian(TensorFile{}, 1, 1, 0.01, "file"), nullptr);
-  EXPECT_THROW(loadLinearGaussian(file, 2, 1, 0.01, "file"), InputError);
+  EXPECT_EQ(loadLinearGaussian(TensorFile{}, 1, 1, 0.01, {}, "file"), nullptr);
+  EXPECT_THROW(loadLinearGaussian(file, 2, 1, 0.01, {}, "file"), InputError);
   EXPECT_THROW(fitLinearGaussian({wave(2, 1)}, 2, 0.01), InputError);
 }
 

@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "model/likelihood.h"
 #include "model/linear_gaussian.h"
+#include "motion/rotation.h"
 
 namespace marey {
 namespace {

@@ -182,7 +182,7 @@ TEST_F(Report, APdfIsWrittenWhereWeasyprintIsInstalled) {
 TEST(Figures, TheLikelihoodBandIsThe5To95PercentRangeOfTheRuns) {
   ReportData data;
   data.systems = {{"s", 0}};
-  data.likelihoods = {{"p", 20.0, {{0, {{3}, {1}, {2}, {10}}}}, 39.9}};
+  data.likelihoods = {{"p", "nats per frame, cm", 20.0, {{0, {{3}, {1}, {2}, {10}}}}, 39.9}};
   const auto figures = figuresOf(data);
   ASSERT_EQ(figures.size(), 1U);
   const auto& series = figures[0].chart->charts[0].series;

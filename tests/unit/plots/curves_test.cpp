@@ -283,6 +283,23 @@ TEST(Likelihoods, ModelsOfOtherSkeletonsHaveTheirOwnAxisAndWorstFrame) {
   EXPECT_EQ(likelihoodHighlights(scored, {{2, 1}}).front().chart, 0);
 }
 
+TEST(Likelihoods, ModelsOfOtherUnitsHaveTheirOwnAxisWithTheUnit) {
+  auto groups = scoredGroups();
+  groups.push_back(groupOf(3, "Turns", 1, {walkerClip(7)}));
+  for (Motion& motion : groups[1].motions)
+    if (motion.score) motion.score->unit = "nats per frame, cm";
+  groups[2].motions[0].score =
+      ClipScore{.firstFrame = 2, .unit = "nats per frame, cm and rad", .loglikNats = {900, 901}};
+  const auto scored = likelihoodGroups(
+      groups, {"MG", "Turns"}, [](const std::string&) { return nullptr; }, 20.0);
+  LinkedGrid grid = likelihoodGrid(scored, {}, false);
+  ASSERT_GE(grid.grid.charts.size(), 2U);
+  EXPECT_EQ(grid.grid.charts[0].y.unit, "nats per frame, cm");
+  EXPECT_EQ(grid.grid.charts[1].y.unit, "nats per frame, cm and rad");
+  markWorst(grid, scored, *worstFrame(scored, std::nullopt, "Turns"));
+  EXPECT_EQ(grid.grid.charts[1].series.back().name, "worst frame, 900 nats, cm and rad");
+}
+
 TEST(Diversity, APickedMotionShowsItsDistanceFromTheOthers) {
   const auto sets = motionSets(twoGroups());
   Progress progress;

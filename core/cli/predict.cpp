@@ -75,15 +75,17 @@ class Predictor {
     m_request.clip = clip;
     const TaskOutcome outcome = runTask(m_task, *m_model, m_request, progress);
     Json entry = {{"clip", clip.source.path.empty() ? clip.name : clip.source.path}};
-    for (size_t s = 0; s < outcome.motions.size(); ++s)
-      entry["files"].push_back(write(outcome.motions[s], clip.name, static_cast<int>(s)));
+    for (size_t s = 0; s < outcome.motions.size(); ++s) {
+      m_files.push_back(write(outcome.motions[s], clip.name, static_cast<int>(s)));
+      entry["files"].push_back(m_files.back());
+    }
     if (outcome.reference) {
       const PoseError error = poseError(outcome.motions, *outcome.reference);
       entry["error"] = errorJson(error, m_model->info().features.fps);
       m_sumCm += error.meanCm;
       ++m_judged;
     }
-    m_clips.push_back(std::move(entry));
+    m_predictions.push_back(std::move(entry));
   }
 
   std::string write(Clip motion, const std::string& of, int sample) {
@@ -101,13 +103,13 @@ class Predictor {
   }
 
   void print() {
-    Json result = {{"clips", m_clips}};
+    Json result = {{"clips", m_files}, {"predictions", m_predictions}};
     if (m_judged > 0) result["error"] = {{"mean_cm", m_sumCm / m_judged}, {"clips", m_judged}};
     m_report.addTo(result);
     tell(m_context, m_report);
     m_fits.addTo(result);
     m_fits.tell(m_context);
-    std::string text = fmt::format("{} clips continued in {}", m_clips.size(), m_options.out);
+    std::string text = fmt::format("{} clips continued in {}", m_predictions.size(), m_options.out);
     if (m_judged > 0)
       text += fmt::format("; {:.1f} cm from what really came (mean over joints and frames)",
                           m_sumCm / m_judged);
@@ -122,7 +124,8 @@ class Predictor {
   io::InputReport m_report;
   StagedFolder m_staged;  ///< all clips or none
   FitReport m_fits;
-  Json m_clips = Json::array();
+  std::vector<std::string> m_files;
+  Json m_predictions = Json::array();
   double m_sumCm = 0.0;
   int m_judged = 0;
 };

@@ -41,6 +41,9 @@ double autoStrobe(const Clip& clip) {
   return std::clamp(std::round(20.0 * apartM / std::max(speed, 0.01)) / 20.0, 0.3, 2.0);
 }
 
+constexpr double kCutShare = 0.02;  ///< of a likelihood figure's points that may lie below its axis
+constexpr double kDeepDrop = 2.0;   ///< heights of the others by which they then lie below
+
 std::vector<double> column(const std::vector<std::vector<double>>& runs, size_t frame) {
   std::vector<double> values;
   for (const auto& run : runs) {
@@ -179,6 +182,24 @@ Figure sceneFigure(const ReportData& data, const ScenePanel& panel, int number) 
   return figure;
 }
 
+/// Where a few frames are so unlikely that nothing else could be seen, the axis is cut above them.
+/// Returns the lowest value that lies below it; NaN where none does.
+double cutDeepDrops(Chart& chart) {
+  std::vector<double> lows, highs;
+  for (const Series& series : chart.series) {
+    const bool band = series.kind == SeriesKind::Band;
+    for (const double v : band ? series.low : series.y) lows.push_back(v);
+    for (const double v : band ? series.high : series.y) highs.push_back(v);
+  }
+  if (lows.size() < 2) return std::nan("");
+  const double least = *std::min_element(lows.begin(), lows.end()),
+               most = *std::max_element(highs.begin(), highs.end()),
+               central = quantile(lows, kCutShare), margin = 0.06 * (most - central);
+  if (!(central - least > kDeepDrop * (most - central))) return std::nan("");
+  chart.y.range = std::pair(central - margin, most + margin);
+  return least;
+}
+
 Figure likelihoodFigure(const ReportData& data, const LikelihoodPanel& panel, int number) {
   Chart chart;
   chart.x = {.label = "time", .unit = "s"};
@@ -204,6 +225,8 @@ Figure likelihoodFigure(const ReportData& data, const LikelihoodPanel& panel, in
         " The dashed line is the mean of a linear-Gaussian autoregression over all natural clips, "
         "fitted on the model's training data with the same observation floor.";
   }
+  if (const double least = cutDeepDrops(chart); std::isfinite(least))
+    figure.caption += fmt::format(" The axis is cut: single frames go down to {:.0f}.", least);
   if (!panel.note.empty()) figure.caption += " " + panel.note;
   figure.chart = render::single(std::move(chart));
   figure.size = {720, 300};

@@ -179,6 +179,24 @@ TEST_F(Report, APdfIsWrittenWhereWeasyprintIsInstalled) {
   EXPECT_EQ(readFile(files.pdf).substr(0, 5), "%PDF-");
 }
 
+TEST(Figures, AFewFramesOfNoLikelihoodDoNotHideTheOthers) {
+  ReportData data;
+  data.systems = {{"s", 0}};
+  std::vector<double> nats(100, 40.0);
+  for (size_t t = 0; t < nats.size(); ++t) nats[t] += t % 2 == 0 ? 5.0 : -5.0;
+  nats[70] = -40000.0;
+  data.likelihoods = {{"p", "nats per frame, cm", 20.0, {{0, {nats}}}, {}}};
+  const auto cut = figuresOf(data);
+  ASSERT_TRUE(cut[0].chart->charts[0].y.range);
+  EXPECT_GT(cut[0].chart->charts[0].y.range->first, 0.0);
+  EXPECT_LT(cut[0].chart->charts[0].y.range->first, 35.0);
+  EXPECT_GT(cut[0].chart->charts[0].y.range->second, 45.0);
+  EXPECT_NE(cut[0].caption.find("cut: single frames go down to -40000"), std::string::npos);
+  // A drop that can be drawn is drawn.
+  data.likelihoods[0].groups[0].nats[0][70] = 28.0;
+  EXPECT_FALSE(figuresOf(data)[0].chart->charts[0].y.range);
+}
+
 TEST(Figures, TheLikelihoodBandIsThe5To95PercentRangeOfTheRuns) {
   ReportData data;
   data.systems = {{"s", 0}};

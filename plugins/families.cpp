@@ -4,11 +4,12 @@
 
 #include "moglow/family.h"
 #include "rnn/family.h"
+#include "vae/family.h"
 
 namespace marey {
 
 std::span<const ModelFamily> modelFamilies() {
-  static const std::array families{moglow::family(), rnn::family()};
+  static const std::array families{moglow::family(), rnn::family(), vae::family()};
   return families;
 }
 

@@ -8,6 +8,7 @@
 #include "base/npy.h"
 #include "cli/command.h"
 #include "model/conformance.h"
+#include "model/learnt.h"
 #include "model/likelihood.h"
 #include "model/model_card.h"
 #include "model/pose_units.h"
@@ -113,13 +114,20 @@ void runImport(const Options& o, const Context& context) {
   context.print(result, text);
 }
 
-/// Half precision leaves standardisers alone: their rounding would move every pose.
+/// Half precision leaves standardisers alone, and what was fitted in closed form: their rounding
+/// would move every pose.
+void halve(const ModelInfo& info, TensorFile& file) {
+  for (const std::string& name :
+       learntTensors(familyNamed(info.family, modelFamilies(), info.variant), info)) {
+    Tensor& tensor = file.tensors.at(name);
+    tensor = tensor.as(DType::F16);
+  }
+}
+
 void runExport(const Options& o, const Context& context) {
   const auto model = loadModel(o.model, modelFamilies());
   TensorFile file = model->save();
-  if (o.half)
-    for (auto& [name, tensor] : file.tensors)
-      if (name.starts_with("weights/flow.")) tensor = tensor.as(DType::F16);
+  if (o.half) halve(model->info(), file);
   if (!o.name.empty()) file.metadata["variant"] = o.name;
   passAdviceOn(o.model, file.metadata);
   if (!o.card.empty()) storeAdvice(file.metadata, readFile(o.card, size_t{1} << 20), {});
@@ -202,7 +210,7 @@ void addModelCommand(CLI::App& app, Context& context) {
                                [o, &context] { runExport(*o, context); });
   exporting->add_option("MODEL", o->model, "Model (.marey)")->required();
   exporting->add_option("--out", o->out, "Model to write")->required();
-  exporting->add_flag("--half", o->half, "Store the flow's weights in 16 bits");
+  exporting->add_flag("--half", o->half, "Store what the network learnt in 16 bits");
   exporting->add_option("--name", o->name, "New name of the model");
   exporting->add_option("--card", o->card, "Model card (Markdown) to keep in the model");
   exporting

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "model/learnt.h"
 #include "model/trainable.h"
 #include "model/weights.h"
 #include "motion/representation/representation.h"
@@ -164,11 +165,12 @@ TensorFile randomModel(const Json& config, const std::string& origin, const Mode
   TensorFile file;
   storeCommon(info, file);
   storeWeights(*trainee.net, file);
+  const auto learnt = learntTensors(*trainee.net);
   uint32_t number = 0;
   for (auto& [name, tensor] : file.tensors) {
     auto values = tensor.toFloats();
     ++number;
-    if (!name.starts_with("weights/flow.") ||
+    if (!learnt.contains(name) ||
         std::any_of(values.begin(), values.end(), [](float v) { return v != 0.f; }))
       continue;
     fillNormal({.seed = seed, .sample = number, .stage = RandomStage::Weights}, values);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/random.h"
@@ -42,13 +43,16 @@ class Truth {
   static constexpr uint32_t kDraws = 4;
   static constexpr float kFactor = 4.f;
 
-  explicit Truth(const TensorFile& file) : m_exact(load(file)) {
+  /// Of a family whose network's tensors begin with `network`.
+  explicit Truth(const TensorFile& file, ModelFamily family = moglow::family(),
+                 const std::string& network = "weights/flow.")
+      : m_family(std::move(family)), m_exact(load(file)) {
     const double inputs = widest(file, "weight_ih") + widest(file, "weight_hh");
     for (uint32_t draw = 1; draw <= kDraws; ++draw) {
       TensorFile changed = file;
       uint32_t number = 0;
       for (auto& [name, tensor] : changed.tensors) {
-        const double share = name.starts_with("weights/flow.") ? inputs * 0x1p-24
+        const double share = name.starts_with(network) ? inputs * 0x1p-24
                              : name.starts_with("standardiser/") && name.ends_with("_std")
                                  ? 0x1p-22  // two units of the last place at most
                                  : 0.0;
@@ -82,10 +86,11 @@ class Truth {
       values[i] = static_cast<float>(values[i] * (1.0 + (2.0 * u - 1.0) * share));
     }
   }
-  static std::unique_ptr<MotionModel> load(const TensorFile& file) {
-    return moglow::family().load(file, "truth", {.execution = Execution::Exact});
+  std::unique_ptr<MotionModel> load(const TensorFile& file) const {
+    return m_family.load(file, "truth", {.execution = Execution::Exact});
   }
 
+  ModelFamily m_family;
   std::unique_ptr<MotionModel> m_exact;
   std::vector<std::unique_ptr<MotionModel>> m_changed;
 };

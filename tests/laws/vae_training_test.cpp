@@ -280,6 +280,7 @@ TEST(VaeNet, ItsGradientsAreDifferencesOfItsLoss) {
 }
 
 TEST(VaeNet, TwentyStepsLowerTheLoss) {
+  nn::configureThreads(1, true);
   for (const char* decoder : {"deterministic", "gaussian"}) {
     Config config = tinyConfig(decoder);
     config.hidden = 16;
@@ -301,6 +302,7 @@ TEST(VaeNet, TwentyStepsLowerTheLoss) {
     }
     EXPECT_LT(losses.back(), 0.95 * losses.front()) << decoder;
   }
+  nn::configureThreads(0, true);
 }
 
 TEST(VaeNet, DrawsAreOfTheGeneratorAlone) {

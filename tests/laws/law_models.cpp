@@ -1,5 +1,6 @@
 #include "law_models.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <sstream>
@@ -21,6 +22,40 @@ constexpr double kFps = 20.0;
 std::vector<ModelFamily> allFamilies() {
   std::vector<ModelFamily> out(modelFamilies().begin(), modelFamilies().end());
   out.push_back(test::toyFamily());
+  return out;
+}
+
+namespace {
+
+/// MoGlow above a base that foresees the pose ('MG+'), which is fitted in closed form.
+Json withBase(Json example, const std::string& base) {
+  example["name"] = "moglow-plus-" + base;
+  Json& model = example["model"];
+  model["pose_base"] = base;
+  model["dropout"] = 0.0;
+  model["steps"] = 2;
+  if (base == "kinematic")
+    model.update(
+        {{"regimes", 4}, {"foot_clusters", 8}, {"net_features", 20}, {"feet_pass_flow", true}});
+  return example;
+}
+
+}  // namespace
+
+std::vector<ModelFamily> allSystems() {
+  std::vector<ModelFamily> out = allFamilies();
+  ModelFamily based = familyNamed("moglow", out, "laws");
+  const Json plain = based.example;
+  for (const char* base : {"linear", "kinematic"}) {
+    based.example = withBase(plain, base);
+    out.push_back(based);
+  }
+  return out;
+}
+
+std::string systemName(const ModelFamily& family) {
+  auto out = family.example.at("name").get<std::string>();
+  std::replace(out.begin(), out.end(), '-', '_');
   return out;
 }
 
@@ -72,14 +107,14 @@ TrainRequest requestOf(const ModelFamily& family, const std::filesystem::path& r
 
 const Made& madeBy(const ModelFamily& family) {
   static std::map<std::string, Made> made;
-  if (const auto found = made.find(family.name); found != made.end()) return found->second;
+  if (const auto found = made.find(systemName(family)); found != made.end()) return found->second;
   const test::TempFolder folder;
   Progress progress;
   const TrainRequest request = requestOf(family, folder / "run");
   Made out{.result = train(data(), request, allFamilies(), progress), .file = {}, .losses = {}};
   out.file = readTensorFile(out.result.last);
   if (family.makeTrainee) out.losses = lossesIn(request.run / "log.csv");
-  return made.emplace(family.name, std::move(out)).first->second;
+  return made.emplace(systemName(family), std::move(out)).first->second;
 }
 
 }  // namespace marey::test::law

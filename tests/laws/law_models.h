@@ -12,6 +12,11 @@ namespace marey::test::law {
 
 /// Those of the list, and the toy.
 std::vector<ModelFamily> allFamilies();
+/// Those, and further models of one family that are systems of their own: the same family with
+/// another example.
+std::vector<ModelFamily> allSystems();
+/// Of the example, as a name of tests: "rnn_small".
+std::string systemName(const ModelFamily& family);
 
 std::vector<Clip> walks(int count, double seconds, uint64_t seed);
 /// Of the walker.

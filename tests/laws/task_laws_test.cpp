@@ -12,7 +12,8 @@
 namespace marey {
 namespace {
 
-using test::law::allFamilies;
+using test::law::allSystems;
+using test::law::systemName;
 using test::law::walks;
 
 /// A request that has something for every task.
@@ -70,9 +71,10 @@ std::vector<Task> allTasks() {
 
 INSTANTIATE_TEST_SUITE_P(Every, TaskLaws,
                          testing::Combine(testing::ValuesIn(allTasks()),
-                                          testing::ValuesIn(allFamilies())),
+                                          testing::ValuesIn(allSystems())),
                          [](const auto& info) {
-                           return std::get<0>(info.param).name + "_" + std::get<1>(info.param).name;
+                           return std::get<0>(info.param).name + "_" +
+                                  systemName(std::get<1>(info.param));
                          });
 
 TEST(Tasks, AreFoundByName) {
@@ -85,15 +87,15 @@ TEST(Tasks, AreFoundByName) {
 TEST(Predict, IsJudgedByWhatCame) {
   const Clip clip = walks(1, 3.0, 8).front();
   Progress progress;
-  for (const ModelFamily& family : allFamilies()) {
+  for (const ModelFamily& family : allSystems()) {
     const auto model = family.load(test::law::madeBy(family).file, "law.marey", {});
     const Task& predict = taskNamed("predict");
     if (!predict.whyNot(*model).empty()) continue;
     TaskRequest request{.clip = clip, .path = {}, .samples = 1, .seedFrames = 20};
     const TaskOutcome outcome = runTask(predict, *model, request, progress);
     const Clip rest = sliceFrames(clip, 20, clip.frameCount());
-    EXPECT_LT(poseError({&rest, 1}, *outcome.reference).meanCm, 0.01) << family.name;
-    EXPECT_LT((outcome.motions[0].at(0, 0) - clip.at(20, 0)).norm(), 0.3F) << family.name;
+    EXPECT_LT(poseError({&rest, 1}, *outcome.reference).meanCm, 0.01) << systemName(family);
+    EXPECT_LT((outcome.motions[0].at(0, 0) - clip.at(20, 0)).norm(), 0.3F) << systemName(family);
     request.seedFrames = model->info().context - 1;
     if (request.seedFrames > 0) {
       EXPECT_THROW(runTask(predict, *model, request, progress), InputError);

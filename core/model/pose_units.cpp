@@ -55,6 +55,7 @@ double toShownPerFrame(const Standardiser& standardiser, const std::vector<Chann
 
 std::vector<double> floorScales(const std::vector<Channel>& channels) {
   std::vector<double> out;
+  out.reserve(channels.size());
   for (const Channel& channel : channels) out.push_back(isLength(channel) ? 1.0 : 1.0 / kFloorArmM);
   return out;
 }

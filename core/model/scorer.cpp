@@ -88,6 +88,7 @@ void scoreGroup(const MotionModel& model, const std::vector<Lane>& lanes, const 
   const ModelInfo& info = model.info();
   const DensityEstimator& density = *model.density();
   std::vector<RolloutState> states;
+  states.reserve(lanes.size());
   for (const Lane& lane : lanes)
     states.push_back(density.start(
         1, Eigen::Map<const Eigen::RowVectorXf>(lane.features->pose.data(),

@@ -11,10 +11,10 @@ constexpr long kRowsOfOwn = 24;
 
 }  // namespace
 
-RecurrentNet::RecurrentNet(const StackShape& shape, long outputs)
+RecurrentNet::RecurrentNet(const StackShape& shape, long outputs, Precision precision)
     : m_outputs(outputs),
-      m_stack(shape, Precision::Float32),
-      m_output(shape.hidden, outputs, Precision::Float32),
+      m_stack(shape, precision),
+      m_output(shape.hidden, outputs, precision),
       m_bias(static_cast<size_t>(m_output.panels() * kPanel)) {}
 
 void RecurrentNet::setOutput(std::span<const float> weights, std::span<const float> bias) {

@@ -13,7 +13,7 @@ namespace marey::nn {
 
 class RecurrentNet {
  public:
-  RecurrentNet(const StackShape& shape, long outputs);
+  RecurrentNet(const StackShape& shape, long outputs, Precision precision);
   void setLayer(long layer, const LayerWeights& weights) { m_stack.setLayer(layer, weights); }
   /// `weights` [outputs, hidden] row-major, `bias` [outputs].
   void setOutput(std::span<const float> weights, std::span<const float> bias);

@@ -39,8 +39,10 @@ std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
   auto net = std::make_shared<Net>(config, 0);
   loadWeights(*net, file, origin);
   info = completed(std::move(info), config);
+  const auto precision = options.weights == WeightPrecision::BFloat16 ? nn::Precision::BFloat16
+                                                                      : nn::Precision::Float32;
   if (options.execution == Execution::Engine)
-    return std::make_unique<EngineModel>(std::move(info), config, std::move(file));
+    return std::make_unique<EngineModel>(std::move(info), config, std::move(file), precision);
   const auto type = options.execution == Execution::Exact ? torch::kFloat64 : torch::kFloat32;
   return std::make_unique<ReferenceModel>(std::move(info), std::move(net), type);
 }

@@ -12,11 +12,11 @@ nn::StackShape shapeOf(const Config& c) {
       .cell = nn::cellNamed(c.cell), .inputs = c.inputs(), .hidden = c.hidden, .layers = c.layers};
 }
 
-nn::RecurrentNet packed(const Config& c, const TensorFile& file) {
+nn::RecurrentNet packed(const Config& c, const TensorFile& file, nn::Precision precision) {
   const auto read = [&](const std::string& name) {
     return file.tensors.at("weights/" + name).toFloats();
   };
-  nn::RecurrentNet out(shapeOf(c), c.poseDim);
+  nn::RecurrentNet out(shapeOf(c), c.poseDim, precision);
   for (int layer = 0; layer < c.layers; ++layer) {
     const std::string suffix = "_l" + std::to_string(layer);
     const auto input = read("weight_ih" + suffix), recurrent = read("weight_hh" + suffix),
@@ -35,12 +35,13 @@ struct EngineState {
 
 }  // namespace
 
-EngineModel::EngineModel(ModelInfo info, const Config& config, TensorFile file)
+EngineModel::EngineModel(ModelInfo info, const Config& config, TensorFile file,
+                         nn::Precision precision)
     : m_info(std::move(info)),
       m_config(config),
       m_units(unitsOf(m_info)),
       m_file(std::move(file)),
-      m_net(packed(config, m_file)) {}
+      m_net(packed(config, m_file, precision)) {}
 
 RolloutState EngineModel::start(int batch, const Matrix& history) const {
   // Poses are no input of this model: a history is taken and of no effect.

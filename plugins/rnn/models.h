@@ -13,7 +13,7 @@ namespace marey::rnn {
 class EngineModel : public MotionModel, public FrameGenerator {
  public:
   /// `file` holds checked weights.
-  EngineModel(ModelInfo info, const Config& config, TensorFile file);
+  EngineModel(ModelInfo info, const Config& config, TensorFile file, nn::Precision precision);
   const ModelInfo& info() const override { return m_info; }
   const FrameGenerator* rollout() const override { return this; }
   RolloutState start(int batch, const Matrix& history) const override;

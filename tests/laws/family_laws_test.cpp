@@ -131,6 +131,16 @@ TEST_P(FamilyLaws, AgreesWithItsPlainPath) {
     EXPECT_LT((fast[b] - plain[b]).cwiseAbs().maxCoeff(), 1e-3F) << "metres";
 }
 
+/// Of families that keep weights in 16 bits: those that have an engine for them, hence a gradient.
+TEST_P(FamilyLaws, RoundsItsWeightsWhereItIsAskedTo) {
+  if (!family().makeTrainee) return;
+  const auto rounded =
+      family().load(madeBy(family()).file, "law.marey", {.weights = WeightPrecision::BFloat16});
+  const auto whole = posesOf(*model(), turning(1)), near = posesOf(*rounded, turning(1));
+  EXPECT_FALSE(near == whole);
+  EXPECT_LT((near[0] - whole[0]).cwiseAbs().maxCoeff(), 0.5F) << "metres";
+}
+
 TEST_P(FamilyLaws, ForksByCopyingItsState) {
   const auto one = model();
   const ModelInfo& info = one->info();

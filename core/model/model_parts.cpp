@@ -21,6 +21,24 @@ void standardise(const float* values, long count, const std::vector<float>& mean
       out[i + j] = (values[i + j] - mean[static_cast<size_t>(j)]) / std[static_cast<size_t>(j)];
 }
 
+ModelInfo describedInfo(const std::string& family, const Json& config, int poseDim, int controlDim,
+                        Json used) {
+  ModelInfo out;
+  out.family = family;
+  if (config.contains("name") && config["name"].is_string()) out.variant = config["name"];
+  out.poseDim = poseDim;
+  out.controlDim = controlDim;
+  out.config = std::move(used);
+  return out;
+}
+
+void requireStoredSizes(const ModelInfo& info, int poseDim, int controlDim,
+                        const std::string& origin) {
+  if (poseDim != info.poseDim || controlDim != info.controlDim)
+    throwInput({.path = origin}, "a configuration of the stored dimensions", "{}/{} beside {}/{}",
+               poseDim, controlDim, info.poseDim, info.controlDim);
+}
+
 void requireShape(const char* what, const Matrix& m, long rows, long columns) {
   if (m.rows() != rows || m.cols() != columns)
     throwInput({.path = what}, fmt::format("{} x {}", rows, columns), "{} x {}", m.rows(),

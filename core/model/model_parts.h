@@ -12,6 +12,14 @@ Standardiser unitsOf(const ModelInfo& info);
 void standardise(const float* values, long count, const std::vector<float>& mean,
                  const std::vector<float>& std, float* out);
 
+/// What a configuration says of its models, whatever the family: names, sizes and the
+/// hyper-parameters as used.
+ModelInfo describedInfo(const std::string& family, const Json& config, int poseDim, int controlDim,
+                        Json used);
+/// Throws InputError unless a stored model has the sizes of its configuration.
+void requireStoredSizes(const ModelInfo& info, int poseDim, int controlDim,
+                        const std::string& origin);
+
 /// Throws InputError naming `what`.
 void requireShape(const char* what, const Matrix& matrix, long rows, long columns);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "model/model_parts.h"
 #include "model/weights.h"
 #include "moglow/engine_model.h"
 #include "moglow/reference_model.h"
@@ -44,22 +45,15 @@ ModelInfo completed(ModelInfo info, const Config& config) {
 
 ModelInfo describe(const Json& json, const std::string& origin) {
   const Config config = configFromJson(json, origin);
-  ModelInfo out;
-  out.family = kFamily;
-  if (json.contains("name") && json["name"].is_string()) out.variant = json["name"];
-  out.poseDim = config.poseDim;
-  out.controlDim = config.controlDim;
-  out.config = toJson(config);
-  return completed(std::move(out), config);
+  return completed(describedInfo(kFamily, json, config.poseDim, config.controlDim, toJson(config)),
+                   config);
 }
 
 std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
                                   const LoadOptions& options) {
   ModelInfo info = loadCommon(file, origin);
   const Config config = configFromJson(info.config, origin);
-  if (config.poseDim != info.poseDim || config.controlDim != info.controlDim)
-    throwInput({.path = origin}, "a configuration of the stored dimensions", "{}/{} beside {}/{}",
-               config.poseDim, config.controlDim, info.poseDim, info.controlDim);
+  requireStoredSizes(info, config.poseDim, config.controlDim, origin);
   const BodyFacts body = bodyFacts(info.skeleton.get(), info.standardiser);
   if (options.execution != Execution::Engine) {
     auto net = std::make_shared<Net>(config, body, 0);

@@ -5,6 +5,7 @@
 #include "vae/reference_model.h"
 
 #include "base/error.h"
+#include "model/model_parts.h"
 #include "model/weights.h"
 
 namespace marey::vae {
@@ -22,22 +23,15 @@ ModelInfo completed(ModelInfo info, const Config& config) {
 
 ModelInfo describe(const Json& json, const std::string& origin) {
   const Config config = configFromJson(json, origin);
-  ModelInfo out;
-  out.family = kFamily;
-  if (json.contains("name") && json["name"].is_string()) out.variant = json["name"];
-  out.poseDim = config.poseDim;
-  out.controlDim = config.controlDim;
-  out.config = toJson(config);
-  return completed(std::move(out), config);
+  return completed(describedInfo(kFamily, json, config.poseDim, config.controlDim, toJson(config)),
+                   config);
 }
 
 std::unique_ptr<MotionModel> load(TensorFile file, const std::string& origin,
                                   const LoadOptions& options) {
   ModelInfo info = loadCommon(file, origin);
   const Config config = configFromJson(info.config, origin);
-  if (config.poseDim != info.poseDim || config.controlDim != info.controlDim)
-    throwInput({.path = origin}, "a configuration of the stored dimensions", "{}/{} beside {}/{}",
-               config.poseDim, config.controlDim, info.poseDim, info.controlDim);
+  requireStoredSizes(info, config.poseDim, config.controlDim, origin);
   info = completed(std::move(info), config);
   auto net = std::make_shared<Net>(config, 0);
   loadWeights(*net, file, origin);

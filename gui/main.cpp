@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <memory>
 
-#include "panels/commands.h"
-#include "panels/panels.h"
-#include "panels/scene_view.h"
-#include "shell/application.h"
-#include "shell/main_window.h"
-#include "shell/no_display.h"
-#include "shell/start_time.h"
+#include "gui/scene/scene_view.h"
+#include "gui/shell/application.h"
+#include "gui/shell/commands.h"
+#include "gui/shell/main_window.h"
+#include "gui/shell/no_display.h"
+#include "gui/shell/panels.h"
+#include "gui/shell/start_time.h"
 
 #include "base/error.h"
 #include "nn/kernels/kernels.h"

@@ -1,4 +1,4 @@
-#include "plots/body_map.h"
+#include "gui/plots/body_map.h"
 
 #include <QHelpEvent>
 #include <QMouseEvent>

@@ -1,4 +1,4 @@
-#include "plots/chart_files.h"
+#include "gui/plots/chart_files.h"
 
 #include <algorithm>
 #include <cctype>

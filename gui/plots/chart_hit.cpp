@@ -1,4 +1,4 @@
-#include "plots/chart_hit.h"
+#include "gui/plots/chart_hit.h"
 
 #include <algorithm>
 #include <cmath>

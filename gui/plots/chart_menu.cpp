@@ -4,9 +4,9 @@
 #include <QContextMenuEvent>
 #include <QMenu>
 
-#include "plots/chart_files.h"
-#include "plots/chart_out.h"
-#include "plots/chart_view.h"
+#include "gui/plots/chart_files.h"
+#include "gui/plots/chart_out.h"
+#include "gui/plots/chart_view.h"
 
 namespace marey::gui {
 

@@ -1,10 +1,10 @@
-#include "plots/chart_out.h"
+#include "gui/plots/chart_out.h"
 
 #include <QContextMenuEvent>
 #include <algorithm>
 
-#include "plots/chart_files.h"
-#include "shell/file_dialogs.h"
+#include "gui/common/file_dialogs.h"
+#include "gui/plots/chart_files.h"
 
 #include "base/error.h"
 

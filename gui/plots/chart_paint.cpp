@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plots/chart_view.h"
+#include "gui/plots/chart_view.h"
 #include <fmt/format.h>
 
 namespace marey::gui {

@@ -1,4 +1,4 @@
-#include "plots/chart_view.h"
+#include "gui/plots/chart_view.h"
 
 #include <QEvent>
 #include <QMouseEvent>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shell/theme.h"
+#include "gui/common/theme.h"
 
 #include "base/error.h"
 

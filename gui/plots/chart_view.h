@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "plots/chart_hit.h"
+#include "gui/plots/chart_hit.h"
 
 #include "render/chart_frame.h"
 

@@ -1,4 +1,4 @@
-#include "plots/count_strip.h"
+#include "gui/plots/count_strip.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "plots/linked_grid.h"
+#include "gui/plots/linked_grid.h"
 
 namespace marey::gui {
 

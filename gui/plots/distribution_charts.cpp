@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "plots/distribution_data.h"
+#include "gui/plots/distribution_data.h"
 
 #include "report/density.h"
 #include "stats/sample_distance.h"

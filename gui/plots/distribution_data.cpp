@@ -1,4 +1,4 @@
-#include "plots/distribution_data.h"
+#include "gui/plots/distribution_data.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "plots/diversity_data.h"
+#include "gui/plots/diversity_data.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "plots/count_strip.h"
+#include "gui/plots/count_strip.h"
 
 #include "base/error.h"
 #include "stats/diversity.h"

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "plots/linked_grid.h"
+#include "gui/plots/linked_grid.h"
 
 #include "base/job.h"
 #include "stats/diversity.h"

@@ -1,4 +1,4 @@
-#include "plots/footstep_data.h"
+#include "gui/plots/footstep_data.h"
 
 #include <algorithm>
 #include <cmath>

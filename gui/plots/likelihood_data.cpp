@@ -1,10 +1,10 @@
-#include "plots/likelihood_data.h"
+#include "gui/plots/likelihood_data.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "plots/count_strip.h"
+#include "gui/plots/count_strip.h"
 #include <fmt/format.h>
 
 #include "model/pose_units.h"

@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "plots/linked_grid.h"
+#include "gui/plots/linked_grid.h"
 
 #include "model/likelihood.h"
 

@@ -6,8 +6,8 @@
 #include <set>
 #include <vector>
 
-#include "plots/chart_hit.h"
-#include "plots/motion_sets.h"
+#include "gui/plots/chart_hit.h"
+#include "gui/plots/motion_sets.h"
 
 namespace marey::gui {
 

@@ -1,4 +1,4 @@
-#include "plots/motion_sets.h"
+#include "gui/plots/motion_sets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "shell/motions.h"
+#include "gui/workspace/motions.h"
 
 namespace marey::gui {
 

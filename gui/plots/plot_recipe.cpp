@@ -1,6 +1,6 @@
-#include "plots/plot_recipe.h"
+#include "gui/plots/plot_recipe.h"
 
-#include "plots/motion_sets.h"
+#include "gui/plots/motion_sets.h"
 #include <fmt/format.h>
 
 #include "experiment/recipe.h"

@@ -1,4 +1,4 @@
-#include "plots/statistics_data.h"
+#include "gui/plots/statistics_data.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "plots/motion_sets.h"
+#include "gui/plots/motion_sets.h"
 
 #include "base/job.h"
 #include "experiment/comparison.h"

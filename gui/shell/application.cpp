@@ -1,4 +1,4 @@
-#include "shell/application.h"
+#include "gui/shell/application.h"
 
 #include <QLocale>
 #include <clocale>

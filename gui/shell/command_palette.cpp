@@ -1,4 +1,4 @@
-#include "shell/command_palette.h"
+#include "gui/shell/command_palette.h"
 
 #include <QKeyEvent>
 #include <QLineEdit>

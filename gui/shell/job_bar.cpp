@@ -1,11 +1,11 @@
-#include "shell/job_bar.h"
+#include "gui/shell/job_bar.h"
 
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QProgressBar>
 #include <QToolButton>
 
-#include "shell/job_list.h"
+#include "gui/shell/job_list.h"
 
 namespace marey::gui {
 

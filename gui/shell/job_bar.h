@@ -4,7 +4,7 @@
 
 #include <QWidget>
 
-#include "shell/jobs.h"
+#include "gui/common/jobs.h"
 
 class QLabel;
 class QProgressBar;

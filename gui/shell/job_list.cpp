@@ -1,4 +1,4 @@
-#include "shell/job_list.h"
+#include "gui/shell/job_list.h"
 
 #include <QHBoxLayout>
 #include <QLabel>

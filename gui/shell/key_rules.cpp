@@ -1,4 +1,4 @@
-#include "shell/key_rules.h"
+#include "gui/shell/key_rules.h"
 
 #include <QAbstractButton>
 #include <QAbstractSpinBox>

@@ -1,4 +1,4 @@
-#include "shell/main_window.h"
+#include "gui/shell/main_window.h"
 
 #include <QAbstractSpinBox>
 #include <QAction>
@@ -12,10 +12,10 @@
 #include <QSettings>
 #include <QStatusBar>
 
-#include "shell/job_bar.h"
-#include "shell/key_rules.h"
-#include "shell/number_box.h"
-#include "shell/offer_bar.h"
+#include "gui/common/number_box.h"
+#include "gui/shell/job_bar.h"
+#include "gui/shell/key_rules.h"
+#include "gui/shell/offer_bar.h"
 #include <qtadvanceddocking/DockAreaWidget.h>
 #include <qtadvanceddocking/DockManager.h>
 #include <qtadvanceddocking/DockWidget.h>

@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
-#include "shell/document_files.h"
-#include "shell/panel.h"
-#include "shell/theme.h"
+#include "gui/common/theme.h"
+#include "gui/document/document_files.h"
+#include "gui/shell/panel.h"
 
 namespace ads {
 class CDockManager;

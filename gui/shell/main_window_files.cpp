@@ -6,9 +6,9 @@
 #include <QStatusBar>
 
 #include "families.h"
-#include "shell/file_dialogs.h"
-#include "shell/main_window.h"
-#include "shell/opened_files.h"
+#include "gui/common/file_dialogs.h"
+#include "gui/document/opened_files.h"
+#include "gui/shell/main_window.h"
 
 #include "base/error.h"
 #include "experiment/edits.h"

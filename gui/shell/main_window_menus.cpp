@@ -7,9 +7,9 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "shell/command_palette.h"
-#include "shell/main_window.h"
-#include "shell/number_box.h"
+#include "gui/common/number_box.h"
+#include "gui/shell/command_palette.h"
+#include "gui/shell/main_window.h"
 #include <qtadvanceddocking/DockManager.h>
 #include <qtadvanceddocking/DockWidget.h>
 

@@ -1,4 +1,4 @@
-#include "shell/no_display.h"
+#include "gui/shell/no_display.h"
 
 #include <QByteArray>
 #include <QString>

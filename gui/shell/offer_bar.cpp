@@ -1,9 +1,9 @@
-#include "shell/offer_bar.h"
+#include "gui/shell/offer_bar.h"
 
 #include <QLabel>
 #include <QPushButton>
 
-#include "shell/workspace.h"
+#include "gui/workspace/workspace.h"
 
 namespace marey::gui {
 

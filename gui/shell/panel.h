@@ -5,14 +5,14 @@
 #include <functional>
 #include <vector>
 
-#include "shell/workspace.h"
+#include "gui/workspace/workspace.h"
 
 namespace marey::gui {
 
 /// Plots lie below what is at the right.
 enum class PanelArea { Left, Centre, Right, Plots, Bottom };
 
-/// One entry of the explicit list in panels/panels.cpp.
+/// One entry of the explicit list in shell/panels.cpp.
 struct PanelSpec {
   QString id;     ///< stable: layouts are stored by it
   QString title;  ///< as shown

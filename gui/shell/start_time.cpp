@@ -1,4 +1,4 @@
-#include "shell/start_time.h"
+#include "gui/shell/start_time.h"
 
 #include <algorithm>
 #include <ctime>

@@ -6,7 +6,7 @@
 #include <QTest>
 
 #include "gui/gui_support.h"
-#include "panels/checkpoint_strip.h"
+#include "gui/training/checkpoint_strip.h"
 #include "unit/model/tiny_run.h"
 
 namespace marey::gui {

@@ -11,8 +11,8 @@
 #include <fstream>
 
 #include "gui/gui_support.h"
-#include "panels/loss_chart.h"
-#include "plots/chart_view.h"
+#include "gui/plots/chart_view.h"
+#include "gui/training/loss_chart.h"
 
 namespace marey::gui {
 namespace {

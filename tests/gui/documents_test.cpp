@@ -14,7 +14,7 @@
 #include <fstream>
 
 #include "gui/gui_support.h"
-#include "panels/commands.h"
+#include "gui/shell/commands.h"
 
 #include "base/error.h"
 

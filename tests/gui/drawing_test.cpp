@@ -5,7 +5,7 @@
 #include <QRegularExpression>
 
 #include "gui/gui_support.h"
-#include "panels/scene_view.h"
+#include "gui/scene/scene_view.h"
 
 #include "render/live_picture.h"
 #include "render/ssim.h"

@@ -15,9 +15,9 @@
 #include <QTimer>
 #include <fstream>
 
+#include "gui/exchange/export_dialog.h"
+#include "gui/exchange/motion_export.h"
 #include "gui/gui_support.h"
-#include "panels/export_dialog.h"
-#include "panels/motion_export.h"
 #include <unistd.h>
 
 #include "base/atomic_file.h"

@@ -1,8 +1,8 @@
 // Tests of a real window. Listing them needs no display.
 #include <QTemporaryDir>
 
-#include "panels/scene_view.h"
-#include "shell/application.h"
+#include "gui/scene/scene_view.h"
+#include "gui/shell/application.h"
 #include <gtest/gtest.h>
 
 int main(int argc, char** argv) {

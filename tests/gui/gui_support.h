@@ -6,8 +6,8 @@
 #include <functional>
 #include <memory>
 
-#include "panels/panels.h"
-#include "shell/main_window.h"
+#include "gui/shell/main_window.h"
+#include "gui/shell/panels.h"
 #include <gtest/gtest.h>
 
 #include "render/image.h"

@@ -13,9 +13,9 @@
 #include <ctime>
 #include <fstream>
 
+#include "gui/exchange/import_dialog.h"
+#include "gui/exchange/import_model.h"
 #include "gui/gui_support.h"
-#include "panels/import_dialog.h"
-#include "panels/import_model.h"
 
 #include "io/clip_io.h"
 #include "motion/walker.h"

@@ -11,13 +11,13 @@
 #include <QTreeView>
 #include <fstream>
 
+#include "gui/document/model_card.h"
+#include "gui/document/motion_tree.h"
+#include "gui/exchange/import_dialog.h"
 #include "gui/gui_support.h"
-#include "panels/import_dialog.h"
-#include "panels/model_card.h"
-#include "panels/motion_tree.h"
-#include "panels/scene_view.h"
-#include "plots/chart_view.h"
-#include "shell/offer_bar.h"
+#include "gui/plots/chart_view.h"
+#include "gui/scene/scene_view.h"
+#include "gui/shell/offer_bar.h"
 
 #include "base/tensor_file.h"
 #include "experiment/edits.h"

@@ -13,9 +13,9 @@
 #include <numbers>
 
 #include "gui/gui_support.h"
-#include "panels/path_view.h"
-#include "panels/scene_view.h"
-#include "plots/chart_view.h"
+#include "gui/path/path_view.h"
+#include "gui/plots/chart_view.h"
+#include "gui/scene/scene_view.h"
 
 namespace marey::gui {
 namespace {

@@ -10,8 +10,8 @@
 #include <filesystem>
 
 #include "gui/gui_support.h"
-#include "panels/path_view.h"
-#include "panels/scene_view.h"
+#include "gui/path/path_view.h"
+#include "gui/scene/scene_view.h"
 #include <vtkCallbackCommand.h>
 #include <vtkCommand.h>
 #include <vtkGenericOpenGLRenderWindow.h>

@@ -10,8 +10,8 @@
 #include <fstream>
 
 #include "gui/gui_support.h"
-#include "shell/application.h"
-#include "shell/command_palette.h"
+#include "gui/shell/application.h"
+#include "gui/shell/command_palette.h"
 
 #include "base/error.h"
 

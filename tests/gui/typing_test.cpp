@@ -9,7 +9,7 @@
 #include <set>
 
 #include "gui/gui_support.h"
-#include "panels/commands.h"
+#include "gui/shell/commands.h"
 
 namespace marey::gui {
 namespace {

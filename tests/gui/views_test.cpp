@@ -8,11 +8,11 @@
 #include <ctime>
 
 #include "gui/gui_support.h"
-#include "panels/contact_tolerance.h"
-#include "panels/gait_rows.h"
-#include "panels/gamepad.h"
-#include "panels/scene_view.h"
-#include "plots/chart_view.h"
+#include "gui/plots/chart_view.h"
+#include "gui/scene/scene_view.h"
+#include "gui/steer/gamepad.h"
+#include "gui/time/gait_rows.h"
+#include "gui/workspace/contact_tolerance.h"
 #include <fcntl.h>
 #include <linux/joystick.h>
 #include <sys/stat.h>

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "gui/gui_support.h"
-#include "shell/job_list.h"
+#include "gui/shell/job_list.h"
 
 #include "io/clip_io.h"
 

@@ -1,8 +1,8 @@
 // Exports, imports and training runs as the window's dialogs handle them.
-#include "panels/import_files.h"
-#include "panels/motion_export.h"
-#include "panels/training_run.h"
-#include "shell/opened_files.h"
+#include "gui/document/opened_files.h"
+#include "gui/exchange/import_files.h"
+#include "gui/exchange/motion_export.h"
+#include "gui/training/training_run.h"
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -43,17 +43,44 @@ const std::map<std::string, Floor> kHouse{
        "report", "plugins"},
       {"CLI11", "dl"}}},
     {"plugins", {{"base", "motion", "nn", "model", "plugins"}, {"torch"}}},
-    {"gui/shell",
-     {{"base", "motion", "io", "stats", "model", "experiment", "render", "report", "plugins"},
-      {"marey_qt", "ads::"}}},
-    {"gui/plots",
-     {{"base", "motion", "io", "stats", "model", "experiment", "render", "report", "shell"},
+    {"gui/common", {{"base", "motion", "render"}, {"marey_qt"}}},
+    {"gui/workspace",
+     {{"base", "motion", "io", "stats", "model", "experiment", "render", "plugins", "gui/common"},
       {"marey_qt"}}},
-    {"gui/panels",
-     {{"base", "motion", "io", "stats", "model", "experiment", "render", "report", "shell",
-       "plots"},
+    {"gui/plots",
+     {{"base", "motion", "io", "stats", "model", "experiment", "render", "report", "gui/common",
+       "gui/workspace"},
+      {"marey_qt"}}},
+    {"gui/path",
+     {{"base", "motion", "io", "stats", "model", "experiment", "render", "gui/common",
+       "gui/workspace", "gui/plots"},
+      {"marey_qt"}}},
+    {"gui/scene",
+     {{"base", "motion", "stats", "model", "experiment", "render", "gui/common", "gui/workspace",
+       "gui/path"},
       {"marey_qt", "VTK::"}}},
-    {"gui", {{"base", "nn", "shell", "panels"}, {"marey_qt", "Qt5::", "VTK::"}}},
+    {"gui/steer",
+     {{"base", "motion", "stats", "model", "experiment", "render", "gui/common", "gui/workspace"},
+      {"marey_qt"}}},
+    {"gui/training",
+     {{"base", "model", "experiment", "render", "gui/common", "gui/workspace", "gui/plots"},
+      {"marey_qt"}}},
+    {"gui/time",
+     {{"base", "motion", "stats", "experiment", "render", "gui/common", "gui/workspace",
+       "gui/plots", "gui/scene"},
+      {"marey_qt"}}},
+    {"gui/document",
+     {{"base", "motion", "io", "model", "experiment", "plugins", "gui/common", "gui/workspace"},
+      {"marey_qt"}}},
+    {"gui/exchange",
+     {{"base", "motion", "io", "experiment", "render", "gui/common", "gui/workspace", "gui/scene"},
+      {"marey_qt"}}},
+    {"gui/shell",
+     {{"base", "io", "model", "experiment", "report", "plugins", "gui/common", "gui/workspace",
+       "gui/plots", "gui/path", "gui/scene", "gui/steer", "gui/training", "gui/time",
+       "gui/document", "gui/exchange"},
+      {"marey_qt", "ads::"}}},
+    {"gui", {{"base", "nn", "gui/scene", "gui/shell"}, {"marey_qt", "Qt5::", "VTK::"}}},
 };
 
 /// "core/io", "plugins/moglow" -> the floor's name in the table; empty when there is none.
@@ -63,6 +90,22 @@ std::string floorOf(const std::string& path) {
     if ((path == folder || path.starts_with(folder + "/")) && folder.size() > longest.size())
       longest = folder;
   return longest;
+}
+
+/// As the table's lists name a floor: "io" for "core/io", "gui/path" as it is.
+std::string shortName(const std::string& floor) {
+  return floor.starts_with("core/") ? floor.substr(5) : floor;
+}
+
+/// The floor whose header stands between quotes; empty where no folder has such headers. Those of
+/// the core and of families begin with their folder, those of the window with "gui/".
+std::string floorOfHeader(const std::string& header) {
+  const std::string folder = fs::path(header).parent_path();
+  if (folder.empty()) return header == "families.h" ? "plugins" : "";
+  if (folder.starts_with("gui/")) return floorOf(folder);
+  const std::string core = floorOf("core/" + folder);
+  if (!core.empty()) return core;
+  return fs::is_directory(fs::path(MAREY_SOURCE_DIR) / "plugins" / folder) ? "plugins" : "";
 }
 
 struct Target {
@@ -101,8 +144,8 @@ std::vector<std::string> brokenLinks(const std::vector<Target>& targets) {
       if (link == "marey_settings") continue;
       const auto other = folderOf.find(link);
       const std::string folder = other == folderOf.end() ? "" : other->second;
-      const bool house = !folder.empty() &&
-                         (folder == here || floor.folders.contains(fs::path(folder).filename()));
+      const bool house =
+          !folder.empty() && (folder == here || floor.folders.contains(shortName(folder)));
       const bool library =
           std::any_of(floor.libraries.begin(), floor.libraries.end(),
                       [&](const std::string& start) { return link.starts_with(start); });
@@ -112,29 +155,37 @@ std::vector<std::string> brokenLinks(const std::vector<Target>& targets) {
   return out;
 }
 
-/// Whether a folder may include a header; `header` as written between quotes or brackets.
-bool mayInclude(const std::string& here, const std::string& header) {
+bool isLibTorch(const std::string& header) {
+  return header.starts_with("torch/") || header.starts_with("ATen/") || header.starts_with("c10/");
+}
+
+/// Whether a folder may include <header>.
+bool mayUse(const std::string& here, const std::string& header) {
   static const std::regex qt("(Qt[A-Za-z0-9]*/.*)|(Q[A-Z][A-Za-z0-9]*)|(q[a-z]+\\.h)");
+  const Names& libraries = kHouse.at(here).libraries;
+  if (std::regex_match(header, qt)) return libraries.contains("marey_qt");
+  if (isLibTorch(header)) return libraries.contains("torch");
+  if (header.starts_with("vtk") || header.starts_with("QVTK")) return libraries.contains("VTK::");
+  return floorOfHeader(header).empty();  // the house's own stand between quotes
+}
+
+/// Whether a folder may include "header".
+bool mayInclude(const std::string& here, const std::string& header) {
   const Floor& floor = kHouse.at(here);
-  if (std::regex_match(header, qt)) return floor.libraries.contains("marey_qt");
-  const bool torch = header.starts_with("torch/") || header.starts_with("ATen/") ||
-                     header.starts_with("c10/") || header == "nn/torch.h";
-  if (torch) return floor.libraries.contains("torch");
-  if (header.starts_with("vtk")) return floor.libraries.contains("VTK::");
-  const std::string folder = header.substr(0, header.find('/'));
-  if (!kHouse.contains("core/" + folder) && !kHouse.contains("gui/" + folder))
-    return true;  // the standard library and others
-  return "core/" + folder == here || "gui/" + folder == here || floor.folders.contains(folder);
+  if (header == "nn/torch.h") return floor.libraries.contains("torch");
+  const std::string there = floorOfHeader(header);
+  return !there.empty() && (there == here || floor.folders.contains(shortName(there)));
 }
 
 std::vector<std::string> brokenIncludes(const fs::path& file, const std::string& here) {
-  static const std::regex include(R"(^\s*#\s*include\s*["<]([^">]+)[">].*)");
+  static const std::regex include(R"(^\s*#\s*include\s*(["<])([^">]+)[">].*)");
   std::vector<std::string> out;
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
     std::smatch match;
-    if (std::regex_match(line, match, include) && !mayInclude(here, match[1]))
-      out.push_back(file.string() + " includes " + match[1].str());
+    if (!std::regex_match(line, match, include)) continue;
+    const bool may = match[1] == "<" ? mayUse(here, match[2]) : mayInclude(here, match[2]);
+    if (!may) out.push_back(file.string() + " includes " + match[2].str());
   }
   return out;
 }
@@ -235,26 +286,40 @@ TEST(TheRules, FindALinkUpwardsQtAndUnknownFolders) {
                                       "marey_new lies in core/new, which is not in the table"}));
 }
 
-TEST(TheRules, FindIncludesOfQtTorchVtkAndUpperFolders) {
-  EXPECT_FALSE(mayInclude("core/cli", "QString"));
-  EXPECT_FALSE(mayInclude("core/render", "QtCore/QObject"));
-  EXPECT_FALSE(mayInclude("plugins", "qobject.h"));
-  EXPECT_FALSE(mayInclude("core/stats", "torch/torch.h"));
-  EXPECT_FALSE(mayInclude("core/render", "ATen/ATen.h"));
+TEST(TheRules, FindIncludesOfQtTorchAndVtk) {
+  EXPECT_FALSE(mayUse("core/cli", "QString"));
+  EXPECT_FALSE(mayUse("core/render", "QtCore/QObject"));
+  EXPECT_FALSE(mayUse("plugins", "qobject.h"));
+  EXPECT_FALSE(mayUse("core/stats", "torch/torch.h"));
+  EXPECT_FALSE(mayUse("core/render", "ATen/ATen.h"));
+  EXPECT_FALSE(mayUse("core/report", "vtkRenderer.h"));
+  EXPECT_FALSE(mayUse("gui/plots", "vtkRenderer.h"));
+  EXPECT_FALSE(mayUse("gui/path", "QVTKOpenGLNativeWidget.h"));
+  EXPECT_FALSE(mayUse("core/io", "motion/clip.h")) << "the house's own stand between quotes";
+  EXPECT_TRUE(mayUse("core/nn", "torch/torch.h"));
+  EXPECT_TRUE(mayUse("core/render", "vtkRenderer.h"));
+  EXPECT_TRUE(mayUse("gui/shell", "QWidget"));
+  EXPECT_TRUE(mayUse("core/io", "queue"));
+  EXPECT_TRUE(mayUse("core/io", "sys/stat.h"));
+}
+
+TEST(TheRules, FindIncludesOfUpperFoldersFamiliesAndUnknownOnes) {
   EXPECT_FALSE(mayInclude("core/experiment", "nn/torch.h"));
-  EXPECT_FALSE(mayInclude("core/report", "vtkRenderer.h"));
   EXPECT_FALSE(mayInclude("core/motion", "io/clip_io.h"));
   EXPECT_FALSE(mayInclude("core/model", "experiment/document.h"));
-  EXPECT_TRUE(mayInclude("core/nn", "torch/torch.h"));
-  EXPECT_TRUE(mayInclude("core/render", "vtkRenderer.h"));
+  EXPECT_FALSE(mayInclude("core/report", "gui/workspace/workspace.h"));
+  EXPECT_FALSE(mayInclude("core/experiment", "moglow/flow_engine.h"));
+  EXPECT_FALSE(mayInclude("core/experiment", "families.h"));
+  EXPECT_FALSE(mayInclude("gui/path", "moglow/flow_engine.h"));
+  EXPECT_FALSE(mayInclude("gui/workspace", "gui/shell/panels.h"));
+  EXPECT_FALSE(mayInclude("gui/path", "gui/scene/scene_view.h"));
+  EXPECT_FALSE(mayInclude("gui/path", "path/path_view.h")) << "no folder of the core";
+  EXPECT_FALSE(mayInclude("gui/path", "gui/path_view.h"));
   EXPECT_TRUE(mayInclude("core/io", "motion/clip.h"));
-  EXPECT_FALSE(mayInclude("core/report", "shell/workspace.h"));
-  EXPECT_FALSE(mayInclude("gui/shell", "panels/panels.h"));
-  EXPECT_FALSE(mayInclude("gui/plots", "vtkRenderer.h"));
-  EXPECT_TRUE(mayInclude("gui/shell", "QWidget"));
-  EXPECT_TRUE(mayInclude("gui/panels", "shell/workspace.h"));
-  EXPECT_TRUE(mayInclude("core/io", "queue"));
-  EXPECT_TRUE(mayInclude("core/io", "sys/stat.h"));
+  EXPECT_TRUE(mayInclude("core/cli", "families.h"));
+  EXPECT_TRUE(mayInclude("plugins", "moglow/flow_engine.h"));
+  EXPECT_TRUE(mayInclude("gui/scene", "gui/workspace/workspace.h"));
+  EXPECT_TRUE(mayInclude("gui/path", "motion/path.h"));
 }
 
 }  // namespace

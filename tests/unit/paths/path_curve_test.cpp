@@ -1,4 +1,4 @@
-#include "panels/path_curve.h"
+#include "gui/path/path_curve.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "panels/path_edit.h"
+#include "gui/path/path_edit.h"
 
 #include <cmath>
 #include <numbers>

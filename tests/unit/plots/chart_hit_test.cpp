@@ -1,9 +1,9 @@
 // What the mouse finds in a chart, and charts as tables.
-#include "plots/chart_hit.h"
+#include "gui/plots/chart_hit.h"
 
 #include <limits>
 
-#include "plots/chart_files.h"
+#include "gui/plots/chart_files.h"
 #include <gtest/gtest.h>
 
 #include "base/error.h"

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plots/distribution_data.h"
-#include "plots/diversity_data.h"
-#include "plots/footstep_data.h"
-#include "plots/likelihood_data.h"
-#include "plots/statistics_data.h"
+#include "gui/plots/distribution_data.h"
+#include "gui/plots/diversity_data.h"
+#include "gui/plots/footstep_data.h"
+#include "gui/plots/likelihood_data.h"
+#include "gui/plots/statistics_data.h"
 #include <gtest/gtest.h>
 
 #include "base/error.h"

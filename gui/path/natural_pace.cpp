@@ -1,0 +1,81 @@
+#include "gui/path/natural_pace.h"
+
+#include <memory>
+
+#include "gui/plots/motion_sets.h"
+
+#include "base/error.h"
+#include "model/training_pace.h"
+
+namespace marey::gui {
+namespace {
+
+Spread spreadFrom(const PaceQuantiles& q) {
+  return {.minimum = q.lowest, .low = q.low, .high = q.high, .maximum = q.highest};
+}
+
+std::optional<TrainingPace> trainedPace(const std::string& file) {
+  try {
+    return readTrainingPace(file);
+  } catch (const Error&) {
+    return std::nullopt;  // sampling with it tells what is wrong
+  }
+}
+
+}  // namespace
+
+NaturalPace::NaturalPace(Workspace& workspace, QObject* parent)
+    : QObject(parent), m_workspace(workspace) {
+  connect(&workspace, &Workspace::motionsChanged, this, &NaturalPace::refresh);
+  connect(&workspace, &Workspace::documentChanged, this, &NaturalPace::refresh);
+  refresh();
+}
+
+std::vector<NaturalPace::Source> NaturalPace::models() const {
+  std::vector<Source> out;
+  for (const ExperimentSystem& system : m_workspace.experiment().systems) {
+    const std::string file = m_workspace.modelFile(system);
+    out.push_back({system.name, file, ModelCache::stampOf(file)});
+  }
+  return out;
+}
+
+std::vector<ClipPtr> NaturalPace::naturalClips() const {
+  // What plots count as natural motion: an odd file among them cannot stop the measurement.
+  for (const MotionSet& set : motionSets(m_workspace.groups()))
+    if (set.natural) return set.clips;
+  return {};
+}
+
+void NaturalPace::refresh() {
+  std::vector<Source> models = this->models();
+  std::vector<ClipPtr> clips = naturalClips();
+  if (models == m_models && clips == m_clips) return;
+  m_models = std::move(models);
+  m_clips = std::move(clips);
+  const int version = ++m_version;
+  m_range.reset();
+  Q_EMIT changed();
+  if (m_clips.empty() && m_models.empty()) return;
+  const auto result = std::make_shared<std::optional<PaceRange>>();
+  m_workspace.jobs().start(
+      Lane::Files, tr("Measure natural speeds and turns"),
+      [models = m_models, clips = m_clips, result](Progress& progress) {
+        for (const Source& model : models)
+          if (const auto pace = trainedPace(model.file)) {
+            *result = PaceRange{.speedMS = spreadFrom(pace->speedMS),
+                                .turnRadS = spreadFrom(pace->turnRadS),
+                                .model = model.name};
+            return;
+          }
+        *result = paceOf(clips, progress);
+      },
+      [this, result, version] {
+        if (m_version != version) return;
+        m_range = *result;
+        Q_EMIT changed();
+      },
+      this);
+}
+
+}  // namespace marey::gui

@@ -1,12 +1,14 @@
 # marey_library(NAME SOURCES ... [PUBLIC ...] [PRIVATE ...] [ROOT folder])
 #
-# One static library per folder. Headers are included as "folder/header.h", so the
-# include root is the parent of the calling folder, where no other is given. Links are recorded in the global
+# One static library per folder. Headers are included by their path below core/ or plugins/
+# ("nn/engine/team.h"), where no other root is given. Links are recorded in the global
 # property MAREY_LINKS for the test that guards the layering.
 function(marey_library name)
   cmake_parse_arguments(ARG "" "ROOT" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
-  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH include_root)
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY "${CMAKE_SOURCE_DIR}" OUTPUT_VARIABLE folder)
+  string(REGEX MATCH "^[^/]+" top "${folder}")
+  set(include_root "${CMAKE_SOURCE_DIR}/${top}")
   if(ARG_ROOT)
     set(include_root "${ARG_ROOT}")
   endif()

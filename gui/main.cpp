@@ -14,8 +14,8 @@
 #include "gui/shell/start_time.h"
 
 #include "base/error.h"
-#include "nn/kernels/kernels.h"
-#include "nn/threads.h"
+#include "nn/engine/kernels/kernels.h"
+#include "nn/torch/threads.h"
 
 namespace marey::gui {
 namespace {

@@ -10,8 +10,8 @@
 #include "base/process_rank.h"
 #include "cli/command.h"
 #include "cli/near_miss.h"
-#include "nn/kernels/kernels.h"
-#include "nn/threads.h"
+#include "nn/engine/kernels/kernels.h"
+#include "nn/torch/threads.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nn/kernels/kernels.h"
+#include "nn/engine/kernels/kernels.h"
 
 namespace marey {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "model/motion_model.h"
-#include "nn/torch.h"
+#include "nn/torch/torch.h"
 
 namespace marey {
 

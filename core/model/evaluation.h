@@ -3,7 +3,7 @@
 
 #include "model/batches.h"
 #include "model/training_noise.h"
-#include "nn/process_group.h"
+#include "nn/processes/process_group.h"
 
 namespace marey {
 

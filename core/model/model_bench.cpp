@@ -11,7 +11,7 @@
 #include "model/weights.h"
 #include "motion/representation/representation.h"
 #include "motion/walker.h"
-#include "nn/machine_limits.h"
+#include "nn/torch/machine_limits.h"
 
 namespace marey {
 namespace {

@@ -5,7 +5,7 @@
 #include "model/adam.h"
 #include "model/trainable.h"
 #include "model/training_config.h"
-#include "nn/process_group.h"
+#include "nn/processes/process_group.h"
 
 namespace marey {
 

@@ -10,7 +10,7 @@
 #include "model/model_bench.h"
 #include "model/optimiser.h"
 #include "model/weights.h"
-#include "nn/machine_limits.h"
+#include "nn/torch/machine_limits.h"
 
 namespace marey {
 namespace {

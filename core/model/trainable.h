@@ -8,7 +8,7 @@
 #include "base/json.h"
 #include "model/model_family.h"
 #include "model/objective.h"
-#include "nn/torch.h"
+#include "nn/torch/torch.h"
 
 namespace marey {
 

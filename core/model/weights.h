@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/tensor_file.h"
-#include "nn/torch.h"
+#include "nn/torch/torch.h"
 
 namespace marey {
 

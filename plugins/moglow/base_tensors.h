@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/tensor_file.h"
-#include "nn/row_matrix.h"
+#include "nn/engine/row_matrix.h"
 
 namespace marey::moglow {
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/json.h"
+#include "nn/flow/flow_spec.h"
 
 namespace marey::moglow {
 
@@ -66,6 +67,13 @@ struct Config {
       return netFeatures + 2 * contacts * (baseOrder - 1) + 3 * baseOrder + contacts +
              passedChannels();
     return tau * poseDim + (tau + 1 + lookahead) * controlDim;
+  }
+  nn::FlowSpec flow() const {
+    return {.channels = poseDim - passedChannels(),
+            .conditioning = conditioning(),
+            .steps = steps,
+            .lu = lu,
+            .net = {.cell = cell, .hidden = hidden, .layers = layers}};
   }
   double degreesOfFreedom() const { return base == "student_t" ? df : 0.0; }
 };

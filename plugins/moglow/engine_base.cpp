@@ -8,7 +8,7 @@
 #include "moglow/base_tensors.h"
 #include "moglow/engine_kinematic.h"
 #include "moglow/engine_linear.h"
-#include "nn/team.h"
+#include "nn/engine/team.h"
 
 namespace marey::moglow {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "moglow/engine_base.h"
 #include "moglow/engine_chart.h"
-#include "nn/row_matrix.h"
+#include "nn/engine/row_matrix.h"
 
 namespace marey::moglow {
 

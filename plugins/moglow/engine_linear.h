@@ -2,7 +2,7 @@
 #pragma once
 
 #include "moglow/engine_base.h"
-#include "nn/row_matrix.h"
+#include "nn/engine/row_matrix.h"
 
 namespace marey::moglow {
 

@@ -8,6 +8,11 @@
 #include "moglow/engine_rollout.h"
 
 namespace marey::moglow {
+namespace {
+
+constexpr const char* kStoredFlow = "weights/flow.";  ///< what the names of its tensors begin with
+
+}  // namespace
 
 EngineModel::EngineModel(ModelInfo info, const Config& config, TensorFile file,
                          std::unique_ptr<const EngineBase> base,
@@ -17,7 +22,7 @@ EngineModel::EngineModel(ModelInfo info, const Config& config, TensorFile file,
       m_config(config),
       m_units(unitsOf(m_info)),
       m_kept(std::move(file)),
-      m_flow(config, m_kept, precision, origin),
+      m_flow(config.flow(), m_kept, kStoredFlow, precision, origin),
       m_base(std::move(base)),
       m_motion(std::move(motion)) {}
 

@@ -6,7 +6,7 @@
 
 #include "model/motion_model.h"
 #include "moglow/engine_base.h"
-#include "moglow/flow_engine.h"
+#include "nn/flow/flow_engine.h"
 
 namespace marey::moglow {
 
@@ -47,7 +47,7 @@ class EngineModel : public MotionModel, public FrameGenerator, public DensityEst
   Config m_config;
   Standardiser m_units;  ///< zeros and ones where the model has none
   TensorFile m_kept;     ///< everything but what is packed
-  FlowEngine m_flow;
+  nn::FlowEngine m_flow;
   std::unique_ptr<const EngineBase> m_base;    ///< of densities
   std::unique_ptr<const EngineBase> m_motion;  ///< of samples; null where that is m_base
 };

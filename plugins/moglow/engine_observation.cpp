@@ -62,13 +62,13 @@ class EngineModel::Observation {
   const EngineModel& m_model;
   std::vector<Rollout*> m_rollouts;
   std::vector<Lane> m_lanes;
-  FlowEngine::State m_state;
+  nn::FlowEngine::State m_state;
   std::vector<SequenceScore> m_scores;
   // A piece's rows: history, control, poses, what the nets see of a base, innovations.
   nn::AlignedFloats m_history, m_control, m_poses, m_features, m_innovation;
   std::vector<RowForesight> m_foreseen;
   std::vector<double> m_baseLogDet;
-  FlowEngine::Sequences m_sequences;
+  nn::FlowEngine::Sequences m_sequences;
 };
 
 void EngineModel::Observation::addLane(Rollout& rollout, const ObservedSequence& sequence,

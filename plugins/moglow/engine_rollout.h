@@ -12,7 +12,7 @@ struct EngineModel::Rollout {
   nn::AlignedFloats features;          ///< [B, featureWidth]; with a base
   nn::AlignedFloats pose;              ///< [B, D], standardised; with a base
   std::vector<RowForesight> foreseen;  ///< memory of the frame being made; with a base
-  FlowEngine::State flow;
+  nn::FlowEngine::State flow;
 };
 
 }  // namespace marey::moglow

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "moglow/base_constants.h"
-#include "nn/torch.h"
+#include "nn/torch/torch.h"
 
 namespace marey::moglow {
 

@@ -1,10 +1,11 @@
 #include <regex>
 
+#include "pickle/state_dicts.h"
+#include "pickle/torch_checkpoint.h"
+
 #include "model/weights.h"
 #include "moglow/family.h"
 #include "moglow/reference_model.h"
-#include "nn/state_dicts.h"
-#include "nn/torch_pickle.h"
 
 namespace marey::moglow {
 namespace {

@@ -1,6 +1,6 @@
 #include "moglow/linear_base.h"
 
-#include "nn/flow.h"
+#include "nn/flow/flow.h"
 
 namespace marey::moglow {
 

@@ -12,14 +12,6 @@ namespace {
 constexpr int64_t kStartFrames = 4096;
 constexpr uint64_t kNoiseSeed = 21;  ///< of the observation noise of those frames
 
-nn::FlowSpec flowSpec(const Config& c) {
-  return {.channels = c.poseDim - c.passedChannels(),
-          .conditioning = c.conditioning(),
-          .steps = c.steps,
-          .lu = c.lu,
-          .net = {.cell = c.cell, .hidden = c.hidden, .layers = c.layers}};
-}
-
 nn::Flow::Start startOf(const std::string& name) {
   if (name == "whitening") return nn::Flow::Start::Whitening;
   return name == "reversal" ? nn::Flow::Start::Reversal : nn::Flow::Start::Orthogonal;
@@ -46,7 +38,7 @@ std::shared_ptr<PoseBase> makePoseBase(const Config& config, const BodyFacts& bo
 
 Net::Net(const Config& config, const BodyFacts& body, uint64_t seed) : m_config(config) {
   auto generator = at::detail::createCPUGenerator(seed);
-  m_flow = register_module("flow", std::make_shared<nn::Flow>(flowSpec(config), generator));
+  m_flow = register_module("flow", std::make_shared<nn::Flow>(config.flow(), generator));
   m_base = makePoseBase(config, body);
   if (m_base) register_module("base", m_base);
   if (config.hasMotionBase())

@@ -9,7 +9,7 @@
 #include "model/trainable.h"
 #include "moglow/config.h"
 #include "moglow/pose_base.h"
-#include "nn/fast_flow.h"
+#include "nn/flow/fast_flow.h"
 
 namespace marey::moglow {
 

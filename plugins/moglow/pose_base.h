@@ -7,7 +7,7 @@
 
 #include "moglow/body_facts.h"
 #include "moglow/config.h"
-#include "nn/torch.h"
+#include "nn/torch/torch.h"
 
 namespace marey::moglow {
 

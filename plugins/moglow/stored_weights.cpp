@@ -6,12 +6,12 @@
 
 #include "base/error.h"
 #include "model/weights.h"
-#include "moglow/flow_engine.h"
+#include "nn/flow/flow_engine.h"
 
 namespace marey::moglow {
 namespace {
 
-const std::string kStored = "weights/";
+const std::string kStored = "weights/", kFlow = "flow.";
 
 bool isFinite(const Tensor& tensor) {
   const auto values = tensor.toFloats();
@@ -29,7 +29,8 @@ struct BaseHolder : torch::nn::Module {
 
 void checkFlow(const Config& config, const TensorFile& file, const std::string& origin) {
   std::set<std::string> expected;
-  for (const auto& [name, shape] : flowTensors(config)) {
+  for (const auto& [tensor, shape] : nn::flowTensors(config.flow())) {
+    const std::string name = kFlow + tensor;
     expected.insert(kStored + name);
     if (!isFinite(file.get(kStored + name, shape, origin)))
       throw InputError({.path = origin, .item = "tensor '" + name + "'"}, "finite weights",

@@ -5,7 +5,7 @@
 
 #include "rnn/net.h"
 
-#include "nn/recurrent_net.h"
+#include "nn/engine/recurrent_net.h"
 
 namespace marey::rnn {
 

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "model/model_parts.h"
-#include "nn/team.h"
+#include "nn/engine/team.h"
 
 namespace marey::vae {
 namespace {

@@ -5,7 +5,7 @@
 #include "vae/config.h"
 
 #include "model/motion_model.h"
-#include "nn/bidirectional_stack.h"
+#include "nn/engine/bidirectional_stack.h"
 
 namespace marey::vae {
 

@@ -4,8 +4,9 @@
 #include <string_view>
 #include <utility>
 
+#include "pickle/state_dicts.h"
+
 #include "base/error.h"
-#include "nn/state_dicts.h"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "moglow/engine_base.h"
 #include "moglow/family.h"
 #include "moglow/pose_base.h"
-#include "nn/torch.h"
+#include "nn/torch/torch.h"
 
 namespace marey::moglow {
 namespace {

@@ -14,7 +14,7 @@
 #include "base/random.h"
 #include "model/model_bench.h"
 #include "moglow/family.h"
-#include "nn/threads.h"
+#include "nn/torch/threads.h"
 
 namespace marey {
 namespace {

@@ -10,7 +10,7 @@
 #include "model/scorer.h"
 #include "motion/representation/representation.h"
 #include "motion/walker.h"
-#include "nn/team.h"
+#include "nn/engine/team.h"
 
 namespace marey {
 namespace {

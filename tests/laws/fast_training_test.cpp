@@ -9,7 +9,7 @@
 #include "model/weights.h"
 #include "moglow/family.h"
 #include "moglow/net.h"
-#include "nn/fast_flow.h"
+#include "nn/flow/fast_flow.h"
 
 namespace marey {
 namespace {

@@ -11,7 +11,7 @@
 #include "moglow/family.h"
 #include "moglow/net.h"
 #include "motion/walker.h"
-#include "nn/flow.h"
+#include "nn/flow/flow.h"
 
 namespace marey {
 namespace {

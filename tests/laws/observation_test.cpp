@@ -8,8 +8,8 @@
 #include "moglow/family.h"
 #include "moglow/linear_base.h"
 #include "motion/walker.h"
-#include "nn/flow.h"
-#include "nn/torch.h"
+#include "nn/flow/flow.h"
+#include "nn/torch/torch.h"
 
 namespace marey {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "model/optimiser.h"
-#include "nn/threads.h"
+#include "nn/torch/threads.h"
 
 namespace marey::vae {
 namespace {

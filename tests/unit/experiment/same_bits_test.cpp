@@ -9,7 +9,7 @@
 #include "experiment/demo_resources.h"
 #include "experiment/run.h"
 #include "model/sampler.h"
-#include "nn/threads.h"
+#include "nn/torch/threads.h"
 
 namespace marey {
 namespace {

@@ -30,8 +30,12 @@ const std::map<std::string, Floor> kHouse{
     {"core/motion", {{"base"}, {"Eigen3"}}},
     {"core/io", {{"base", "motion"}, {"TinyGLTF"}}},
     {"core/stats", {{"base", "motion"}, {"Boost"}}},
-    {"core/nn", {{"base"}, {"torch"}}},
-    {"core/model", {{"base", "motion", "nn"}, {"torch"}}},
+    {"core/pickle", {{"base"}, {}}},
+    {"core/nn/engine", {{"base"}, {}}},
+    {"core/nn/torch", {{"base", "nn/engine"}, {"torch"}}},
+    {"core/nn/flow", {{"base", "nn/engine", "nn/torch"}, {"torch", "Eigen3"}}},
+    {"core/nn/processes", {{"base", "nn/torch"}, {"torch"}}},
+    {"core/model", {{"base", "motion", "nn/engine", "nn/torch", "nn/processes"}, {"torch"}}},
     {"core/task", {{"base", "motion", "model"}, {}}},
     {"core/experiment", {{"base", "motion", "model", "stats", "io"}, {}}},
     {"core/render",
@@ -39,10 +43,12 @@ const std::map<std::string, Floor> kHouse{
       {"VTK::", "PkgConfig::CAIRO", "PkgConfig::PNG", "PkgConfig::EGL", "PkgConfig::LIBAV"}}},
     {"core/report", {{"base", "motion", "io", "stats", "model", "experiment", "render"}, {"ZLIB"}}},
     {"core/cli",
-     {{"base", "ranks", "motion", "io", "stats", "nn", "model", "task", "experiment", "render",
-       "report", "plugins"},
+     {{"base", "ranks", "motion", "io", "stats", "nn/engine", "nn/torch", "model", "task",
+       "experiment", "render", "report", "plugins"},
       {"CLI11", "dl"}}},
-    {"plugins", {{"base", "motion", "nn", "model", "plugins"}, {"torch"}}},
+    {"plugins",
+     {{"base", "pickle", "motion", "nn/engine", "nn/torch", "nn/flow", "model", "plugins"},
+      {"torch"}}},
     {"gui/common", {{"base", "motion", "render"}, {"marey_qt"}}},
     {"gui/workspace",
      {{"base", "motion", "io", "stats", "model", "experiment", "render", "plugins", "gui/common"},
@@ -80,7 +86,8 @@ const std::map<std::string, Floor> kHouse{
        "gui/plots", "gui/path", "gui/scene", "gui/steer", "gui/training", "gui/time",
        "gui/document", "gui/exchange"},
       {"marey_qt", "ads::"}}},
-    {"gui", {{"base", "nn", "gui/scene", "gui/shell"}, {"marey_qt", "Qt5::", "VTK::"}}},
+    {"gui",
+     {{"base", "nn/engine", "nn/torch", "gui/scene", "gui/shell"}, {"marey_qt", "Qt5::", "VTK::"}}},
 };
 
 /// "core/io", "plugins/moglow" -> the floor's name in the table; empty when there is none.
@@ -172,7 +179,7 @@ bool mayUse(const std::string& here, const std::string& header) {
 /// Whether a folder may include "header".
 bool mayInclude(const std::string& here, const std::string& header) {
   const Floor& floor = kHouse.at(here);
-  if (header == "nn/torch.h") return floor.libraries.contains("torch");
+  if (header == "nn/torch/torch.h") return floor.libraries.contains("torch");
   const std::string there = floorOfHeader(header);
   return !there.empty() && (there == here || floor.folders.contains(shortName(there)));
 }
@@ -196,7 +203,8 @@ TEST(LinkLists, GoDownTheHouseOnly) {
   const auto targets = parseTargets(in);
   Names folders;
   for (const auto& target : targets) folders.insert(floorOf(target.folder));
-  for (const char* folder : {"core/base", "core/motion", "core/io", "core/stats", "core/nn"})
+  for (const char* folder :
+       {"core/base", "core/motion", "core/io", "core/stats", "core/nn/engine", "core/nn/flow"})
     EXPECT_TRUE(folders.contains(folder)) << folder << " has no target in the list";
   for (const auto& fault : brokenLinks(targets)) ADD_FAILURE() << fault;
 }
@@ -296,7 +304,8 @@ TEST(TheRules, FindIncludesOfQtTorchAndVtk) {
   EXPECT_FALSE(mayUse("gui/plots", "vtkRenderer.h"));
   EXPECT_FALSE(mayUse("gui/path", "QVTKOpenGLNativeWidget.h"));
   EXPECT_FALSE(mayUse("core/io", "motion/clip.h")) << "the house's own stand between quotes";
-  EXPECT_TRUE(mayUse("core/nn", "torch/torch.h"));
+  EXPECT_FALSE(mayUse("core/nn/engine", "torch/torch.h"));
+  EXPECT_TRUE(mayUse("core/nn/flow", "torch/torch.h"));
   EXPECT_TRUE(mayUse("core/render", "vtkRenderer.h"));
   EXPECT_TRUE(mayUse("gui/shell", "QWidget"));
   EXPECT_TRUE(mayUse("core/io", "queue"));
@@ -304,20 +313,24 @@ TEST(TheRules, FindIncludesOfQtTorchAndVtk) {
 }
 
 TEST(TheRules, FindIncludesOfUpperFoldersFamiliesAndUnknownOnes) {
-  EXPECT_FALSE(mayInclude("core/experiment", "nn/torch.h"));
+  EXPECT_FALSE(mayInclude("core/experiment", "nn/torch/torch.h"));
+  EXPECT_FALSE(mayInclude("core/nn/engine", "nn/torch/torch.h"));
+  EXPECT_FALSE(mayInclude("core/nn/engine", "nn/flow/flow_spec.h"));
+  EXPECT_FALSE(mayInclude("core/motion", "nn/engine/team.h"));
+  EXPECT_TRUE(mayInclude("core/nn/engine", "nn/engine/kernels/kernels.h"));
   EXPECT_FALSE(mayInclude("core/motion", "io/clip_io.h"));
   EXPECT_FALSE(mayInclude("core/model", "experiment/document.h"));
   EXPECT_FALSE(mayInclude("core/report", "gui/workspace/workspace.h"));
-  EXPECT_FALSE(mayInclude("core/experiment", "moglow/flow_engine.h"));
+  EXPECT_FALSE(mayInclude("core/experiment", "moglow/engine_model.h"));
   EXPECT_FALSE(mayInclude("core/experiment", "families.h"));
-  EXPECT_FALSE(mayInclude("gui/path", "moglow/flow_engine.h"));
+  EXPECT_FALSE(mayInclude("gui/path", "moglow/engine_model.h"));
   EXPECT_FALSE(mayInclude("gui/workspace", "gui/shell/panels.h"));
   EXPECT_FALSE(mayInclude("gui/path", "gui/scene/scene_view.h"));
   EXPECT_FALSE(mayInclude("gui/path", "path/path_view.h")) << "no folder of the core";
   EXPECT_FALSE(mayInclude("gui/path", "gui/path_view.h"));
   EXPECT_TRUE(mayInclude("core/io", "motion/clip.h"));
   EXPECT_TRUE(mayInclude("core/cli", "families.h"));
-  EXPECT_TRUE(mayInclude("plugins", "moglow/flow_engine.h"));
+  EXPECT_TRUE(mayInclude("plugins", "moglow/engine_model.h"));
   EXPECT_TRUE(mayInclude("gui/scene", "gui/workspace/workspace.h"));
   EXPECT_TRUE(mayInclude("gui/path", "motion/path.h"));
 }

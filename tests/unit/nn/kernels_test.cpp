@@ -1,6 +1,6 @@
 // The engine's inner loops, every instruction set that this processor runs, against double
 // precision; and that a row's result depends on nothing but the row.
-#include "nn/kernels/kernels.h"
+#include "nn/engine/kernels/kernels.h"
 
 #include <algorithm>
 #include <bit>
@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "nn/packed_matrix.h"
-#include "nn/recurrent_stack.h"
-#include "nn/row_matrix.h"
+#include "nn/engine/packed_matrix.h"
+#include "nn/engine/recurrent_stack.h"
+#include "nn/engine/row_matrix.h"
 
 namespace marey::nn {
 namespace {

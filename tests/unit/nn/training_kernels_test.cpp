@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "nn/kernels/kernels.h"
+#include "nn/engine/kernels/kernels.h"
 
 namespace marey::nn {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "cli/command.h"
-#include "model/model_bench.h"
+#include "model/gradient/model_bench.h"
 
 namespace marey::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include "families.h"
 
 #include "cli/command.h"
-#include "model/train_bench.h"
+#include "model/gradient/train_bench.h"
 
 namespace marey::cli {
 namespace {
@@ -60,10 +60,10 @@ void run(Options& o, const Context& context) {
 
 void addTrainBenchCommand(CLI::App& bench, Context& context) {
   auto o = std::make_shared<Options>();
-  auto* command = addCommand(
-      bench, context, "train", "How fast a step of training is",
-      "marey bench train --config resources/models/mg-a.json --batch 100 --frames 70",
-      [o, &context] { run(*o, context); });
+  auto* command =
+      addCommand(bench, context, "train", "How fast a step of training is",
+                 "marey bench train --config resources/models/mg-a.json --batch 100 --frames 70",
+                 [o, &context] { run(*o, context); });
   const auto number = [&](const char* name, int& value, const char* help) {
     command->add_option(name, value, help)->check(CLI::Range(1, 100000))->capture_default_str();
   };

@@ -8,7 +8,7 @@
 #include "base/npy.h"
 #include "cli/command.h"
 #include "model/conformance.h"
-#include "model/learnt.h"
+#include "model/gradient/learnt.h"
 #include "model/likelihood.h"
 #include "model/model_card.h"
 #include "model/pose_units.h"

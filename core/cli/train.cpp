@@ -5,7 +5,7 @@
 #include "families.h"
 
 #include "cli/command.h"
-#include "model/build.h"
+#include "model/gradient/build.h"
 #include "model/likelihood.h"
 
 namespace marey::cli {

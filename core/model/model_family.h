@@ -7,7 +7,7 @@
 
 namespace marey {
 
-class TrainableModel;  // model/trainable.h: libtorch inside
+class TrainableModel;  // model/gradient/trainable.h: libtorch inside
 struct DataSet;        // model/data_set.h
 
 /// What a new network must know of its data.
@@ -53,12 +53,12 @@ struct ModelFamily {
   std::function<bool(const Json& config)> recognises = {};
 
   // One of the two:
-  /// Random weights from `seed`, to be trained by gradient (model/trainer.h).
+  /// Random weights from `seed`, to be trained by gradient (model/gradient/trainer.h).
   std::function<Trainee(const Json& modelConfig, const std::string& origin, const TraineeData& data,
                         uint64_t seed)>
       makeTrainee = {};
   /// A stored model from a data set, without gradients: storeCommon's part is completed by the
-  /// caller (model/build.h). Throws InputError and CancelledError.
+  /// caller (model/gradient/build.h). Throws InputError and CancelledError.
   std::function<TensorFile(const DataSet& data, const Json& modelConfig, const std::string& origin,
                            uint64_t seed, Progress& progress)>
       build = {};

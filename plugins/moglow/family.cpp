@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "model/gradient/weights.h"
 #include "model/model_parts.h"
-#include "model/weights.h"
 #include "moglow/engine_model.h"
 #include "moglow/reference_model.h"
 #include "moglow/stored_weights.h"

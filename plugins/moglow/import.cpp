@@ -3,7 +3,7 @@
 #include "pickle/state_dicts.h"
 #include "pickle/torch_checkpoint.h"
 
-#include "model/weights.h"
+#include "model/gradient/weights.h"
 #include "moglow/family.h"
 #include "moglow/reference_model.h"
 

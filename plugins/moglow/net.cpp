@@ -136,7 +136,7 @@ torch::Tensor Net::draw(const TrainingBatch& batch, at::Generator& generator) co
 torch::Tensor Net::logLikelihood(const TrainingBatch& batch) {
   const int64_t frames = batch.pose.size(1) - m_config.tau - m_config.lookahead;
   const auto poses = batch.pose.narrow(1, 0, m_config.tau + frames);
-  Context context = contextOf(poses, batch.control);
+  Context context = contextOf(batch.seenPose().narrow(1, 0, m_config.tau + frames), batch.control);
   context.keep = batch.draws;
   const auto pass = [&](const torch::Tensor& x, const nn::FlowConditioning& seen) {
     if (execution == Execution::Engine && nn::takesFastPath(*m_flow, x, seen))

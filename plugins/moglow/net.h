@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "model/trainable.h"
+#include "model/gradient/trainable.h"
 #include "moglow/config.h"
 #include "moglow/pose_base.h"
 #include "nn/flow/fast_flow.h"

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "model/weights.h"
+#include "model/gradient/weights.h"
 
 namespace marey::moglow {
 namespace {

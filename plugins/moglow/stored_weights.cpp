@@ -5,7 +5,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "model/weights.h"
+#include "model/gradient/weights.h"
 #include "nn/flow/flow_engine.h"
 
 namespace marey::moglow {

@@ -29,6 +29,7 @@ Config configFromJson(const Json& value, const std::string& origin) {
   c.hidden = reader.optional("hidden", c.hidden);
   c.layers = reader.optional("layers", c.layers);
   c.cell = reader.optional("cell", c.cell);
+  c.feedback = reader.optional("feedback", c.feedback);
   reader.finish();
   requireRange(reader, "pose_dim", c.poseDim, 1, 10000);
   requireRange(reader, "control_dim", c.controlDim, 1, 10000);
@@ -36,16 +37,19 @@ Config configFromJson(const Json& value, const std::string& origin) {
   requireRange(reader, "lookahead", c.lookahead, 0, 1000);
   requireRange(reader, "hidden", c.hidden, 1, 16384);
   requireRange(reader, "layers", c.layers, 1, 16);
+  if (c.feedback) requireRange(reader, "past", c.past, 1, 1000);
   if (c.cell != "lstm" && c.cell != "gru")
     throw InputError(reader.place("cell"), "lstm or gru", "'" + c.cell + "'");
   return c;
 }
 
 Json toJson(const Config& c) {
-  return {{"pose_dim", c.poseDim}, {"control_dim", c.controlDim},
-          {"past", c.past},        {"lookahead", c.lookahead},
-          {"hidden", c.hidden},    {"layers", c.layers},
-          {"cell", c.cell}};
+  Json out = {{"pose_dim", c.poseDim}, {"control_dim", c.controlDim},
+              {"past", c.past},        {"lookahead", c.lookahead},
+              {"hidden", c.hidden},    {"layers", c.layers},
+              {"cell", c.cell}};
+  if (c.feedback) out["feedback"] = true;
+  return out;
 }
 
 }  // namespace marey::rnn

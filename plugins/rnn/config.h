@@ -15,8 +15,10 @@ struct Config {
   int hidden = 512;
   int layers = 1;
   std::string cell = "lstm";  ///< lstm, gru
+  bool feedback = false;      ///< whether each frame also sees the pose of the one before
 
-  int inputs() const { return (past + 1 + lookahead) * controlDim; }
+  int controlInputs() const { return (past + 1 + lookahead) * controlDim; }
+  int inputs() const { return controlInputs() + (feedback ? poseDim : 0); }
   int64_t parameters() const;
 };
 

@@ -3,8 +3,8 @@
 #include "rnn/models.h"
 
 #include "base/error.h"
+#include "model/gradient/weights.h"
 #include "model/model_parts.h"
-#include "model/weights.h"
 
 namespace marey::rnn {
 namespace {

@@ -34,26 +34,42 @@ torch::Tensor Net::windowsOf(const torch::Tensor& controls) const {
   return controls.unfold(1, rows, 1).transpose(2, 3).flatten(2);
 }
 
-torch::Tensor Net::poses(const torch::Tensor& windows, State& state) const {
+torch::Tensor Net::poses(const torch::Tensor& inputs, State& state) const {
   if (!state.hidden.defined())
     state.hidden =
-        torch::zeros({m_config.layers, windows.size(0), m_config.hidden}, windows.options());
+        torch::zeros({m_config.layers, inputs.size(0), m_config.hidden}, inputs.options());
   torch::Tensor seen;
   if (m_config.cell == "lstm") {
     if (!state.cell.defined()) state.cell = torch::zeros_like(state.hidden);
     std::tie(seen, state.hidden, state.cell) =
-        torch::lstm(windows, {state.hidden, state.cell}, m_weights, true, m_config.layers, 0.0,
+        torch::lstm(inputs, {state.hidden, state.cell}, m_weights, true, m_config.layers, 0.0,
                     is_training(), false, true);
   } else {
-    std::tie(seen, state.hidden) = torch::gru(windows, state.hidden, m_weights, true,
+    std::tie(seen, state.hidden) = torch::gru(inputs, state.hidden, m_weights, true,
                                               m_config.layers, 0.0, is_training(), false, true);
   }
   return torch::nn::functional::linear(seen, m_outWeight, m_outBias);
 }
 
-Loss Net::loss(const TrainingBatch& batch) {
+torch::Tensor Net::fedPoses(const TrainingBatch& batch, const torch::Tensor& windows) const {
   State state;
-  const auto made = poses(windowsOf(batch.control), state);
+  const int64_t first = context() - 1, frames = windows.size(1);
+  const auto before = batch.seenPose().narrow(1, first, frames);
+  if (!batch.own.defined()) return poses(torch::cat({windows, before}, 2), state);
+  std::vector<torch::Tensor> made;
+  for (int64_t t = 0; t < frames; ++t) {
+    auto pose = before.narrow(1, t, 1);
+    if (t > 0)
+      pose = torch::where(batch.own.narrow(1, first + t, 1).unsqueeze(2) > 0.5, made.back(), pose);
+    made.push_back(poses(torch::cat({windows.narrow(1, t, 1), pose}, 2), state));
+  }
+  return torch::cat(made, 1);
+}
+
+Loss Net::loss(const TrainingBatch& batch) {
+  const auto windows = windowsOf(batch.control);
+  State state;
+  const auto made = m_config.feedback ? fedPoses(batch, windows) : poses(windows, state);
   const auto wanted = batch.pose.narrow(1, context(), made.size(1));
   return {((made - wanted).square().sum(-1) * scoredMask(batch)).sum()};
 }

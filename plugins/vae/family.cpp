@@ -5,8 +5,8 @@
 #include "vae/reference_model.h"
 
 #include "base/error.h"
+#include "model/gradient/weights.h"
 #include "model/model_parts.h"
-#include "model/weights.h"
 
 namespace marey::vae {
 namespace {

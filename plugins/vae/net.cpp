@@ -141,7 +141,7 @@ double Net::kldWeight(const TrainingBatch& batch) const {
 }
 
 Loss Net::loss(const TrainingBatch& batch) {
-  const Posterior posterior = encode(batch.pose, batch.control, batch.mask);
+  const Posterior posterior = encode(batch.seenPose(), batch.control, batch.mask);
   torch::Tensor latent = posterior.mean;
   if (batch.draws.defined()) latent = latent + (0.5 * posterior.logVariance).exp() * batch.draws;
   const auto mean = decode(latent, batch.control, batch.mask);

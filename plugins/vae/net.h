@@ -8,7 +8,7 @@
 
 #include "vae/config.h"
 
-#include "model/trainable.h"
+#include "model/gradient/trainable.h"
 
 namespace marey::vae {
 

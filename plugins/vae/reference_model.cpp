@@ -5,8 +5,8 @@
 #include "vae/clip_request.h"
 
 #include "base/error.h"
+#include "model/gradient/weights.h"
 #include "model/model_parts.h"
-#include "model/weights.h"
 
 namespace marey::vae {
 

@@ -6,15 +6,15 @@
 #include <string_view>
 
 #include "experiment/document.h"
-#include "model/training_config.h"
+#include "model/gradient/schedules.h"
 
 namespace {
 
 void readTraining(const marey::Json& value) {
   const auto config = marey::trainingConfigFromJson(value, "fuzz.json");
-  const marey::Json written = marey::toJson(config);
+  const marey::Json written = marey::learningRateAt(config, 0, 1);
   if (marey::toJson(marey::trainingConfigFromJson(written, "back")) != written) std::abort();
-  marey::learningRateAt(config, 0);
+  marey::learningRateAt(config, 0, 1);
 }
 
 void readDocument(const marey::Json& value) {

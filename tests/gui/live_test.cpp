@@ -8,7 +8,7 @@
 #include "gui/gui_support.h"
 
 #include "base/atomic_file.h"
-#include "model/model_bench.h"
+#include "model/gradient/model_bench.h"
 
 namespace marey::gui {
 namespace {

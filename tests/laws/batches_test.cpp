@@ -1,4 +1,4 @@
-#include "model/batches.h"
+#include "model/gradient/batches.h"
 
 #include <set>
 

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "model/model_bench.h"
-#include "model/weights.h"
+#include "model/gradient/model_bench.h"
+#include "model/gradient/weights.h"
 #include "moglow/engine_base.h"
 #include "moglow/family.h"
 #include "moglow/pose_base.h"

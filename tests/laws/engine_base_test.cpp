@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "model/model_bench.h"
+#include "model/gradient/model_bench.h"
 #include "moglow/family.h"
 #include "nn/torch/threads.h"
 

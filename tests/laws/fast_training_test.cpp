@@ -6,7 +6,7 @@
 #include <ATen/CPUGeneratorImpl.h>
 #include <gtest/gtest.h>
 
-#include "model/weights.h"
+#include "model/gradient/weights.h"
 #include "moglow/family.h"
 #include "moglow/net.h"
 #include "nn/flow/fast_flow.h"

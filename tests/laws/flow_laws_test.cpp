@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/job.h"
-#include "model/batches.h"
+#include "model/gradient/batches.h"
 #include "moglow/family.h"
 #include "moglow/net.h"
 #include "motion/walker.h"

@@ -50,6 +50,13 @@ std::vector<ModelFamily> allSystems() {
     based.example = withBase(plain, base);
     out.push_back(based);
   }
+  // A recurrent net that sees its own poses, and is trained on them.
+  ModelFamily fed = familyNamed("rnn", out, "laws");
+  fed.example["name"] = "rnn-feedback";
+  fed.example["model"].update({{"past", 2}, {"feedback", true}});
+  fed.example["training"].update(
+      {{"scheduled_sampling", {{"to", 1.0}, {"end_step", 20}}}, {"input_noise", 0.05}});
+  out.push_back(fed);
   return out;
 }
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "model/build.h"
+#include "model/gradient/build.h"
 
 namespace marey::test::law {
 

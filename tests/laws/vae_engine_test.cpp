@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "base/job.h"
 #include "base/random.h"
-#include "model/model_bench.h"
+#include "model/gradient/model_bench.h"
 #include "nn/torch/threads.h"
 
 namespace marey {

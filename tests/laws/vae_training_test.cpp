@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "model/optimiser.h"
+#include "model/gradient/gradient_step.h"
 #include "nn/torch/threads.h"
 
 namespace marey::vae {
@@ -291,10 +291,10 @@ TEST(VaeNet, TwentyStepsLowerTheLoss) {
       *t = t->to(torch::kFloat32);
     TrainingConfig training;
     const auto group = nn::joinProcesses({}, {});
-    Optimiser optimiser(net, training, *group);
+    GradientStep step(net, training, *group);
     std::vector<double> losses;
     for (int64_t step = 0; step < 20; ++step) {
-      const StepReport report = optimiser.step(batch, 0.01, step + 1);
+      const StepReport report = step.take(batch, 0.01, step + 1);
       ASSERT_TRUE(report.taken);
       ASSERT_EQ(report.terms.size(), 2U);
       EXPECT_NEAR(report.terms[0] + report.terms[1], report.loss, 1e-5 * std::abs(report.loss));

@@ -7,7 +7,7 @@
 
 #include "../base/support.h"
 
-#include "model/build.h"
+#include "model/gradient/build.h"
 #include "moglow/family.h"
 #include "motion/walker.h"
 

@@ -1,5 +1,5 @@
 // Training runs and stored models.
-#include "model/trainer.h"
+#include "model/gradient/trainer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "model/kept_checkpoints.h"
+#include "model/gradient/kept_checkpoints.h"
 #include "model/training_pace.h"
 
 namespace marey {

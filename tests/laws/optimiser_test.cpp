@@ -194,9 +194,9 @@ TEST(Optimiser, RmsPropClipsWhatItUses) {
   RmsProp optimiser(module, 0.75);
   module.values.mutable_grad() = torch::tensor({8.0, 0.5}, torch::kFloat64);
   optimiser.step(0.1, 1, {2.0, 0.5});
-  // Clamped to 2 and halved: 1 and 0.25; each over the root of a quarter of its square.
-  EXPECT_NEAR(module.values[0].item<double>(), 1.0 - 0.1 * 1.0 / 0.5, 1e-8);
-  EXPECT_NEAR(module.values[1].item<double>(), 1.0 - 0.1 * 0.25 / 0.125, 1e-8);
+  // Clamped to 2 and halved: 1 and 0.25; each over the root of a quarter of its square, and 1e-8.
+  EXPECT_NEAR(module.values[0].item<double>(), 1.0 - 0.1 * 1.0 / (0.5 + 1e-8), 1e-15);
+  EXPECT_NEAR(module.values[1].item<double>(), 1.0 - 0.1 * 0.25 / (0.125 + 1e-8), 1e-15);
 }
 
 // ---- Schedules, by hand
@@ -304,6 +304,8 @@ TEST(MeetingPoint, IsWhatTheEnvironmentSaysOrMadeFromTheRun) {
     setenv("MASTER_PORT", bad, 1);
     EXPECT_THROW(nn::meetingPoint("runs/a"), InputError) << bad;
   }
+  unsetenv("MASTER_ADDR");
+  unsetenv("MASTER_PORT");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "cli/command.h"
-#include "render/render_bench.h"
+#include "render/scene/render_bench.h"
 
 namespace marey::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "cli/command.h"
 #include "cli/readers.h"
-#include "render/video.h"
+#include "render/film/video.h"
 
 namespace marey::cli {
 namespace fs = std::filesystem;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "render/chart.h"
-#include "render/scene.h"
+#include "render/chart/chart.h"
+#include "render/scene/scene.h"
 #include "report/report_data.h"
 
 namespace marey::report {

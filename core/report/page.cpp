@@ -2,7 +2,7 @@
 
 #include <kainjow/mustache.hpp>
 
-#include "render/image.h"
+#include "render/base/image.h"
 #include "report/resources.h"
 #include "report/tables.h"
 

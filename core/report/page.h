@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/recipe.h"
+#include "render/base/recipe.h"
 #include "report/figures.h"
 #include "report/report_data.h"
 

@@ -11,8 +11,8 @@
 
 #include "motion/clip.h"
 #include "motion/features.h"
-#include "render/camera.h"
-#include "render/recipe.h"
+#include "render/base/camera.h"
+#include "render/base/recipe.h"
 
 namespace marey::report {
 

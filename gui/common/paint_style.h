@@ -9,7 +9,7 @@
 
 #include "gui/common/theme.h"
 
-#include "render/colours.h"
+#include "render/base/colours.h"
 
 namespace marey::gui {
 

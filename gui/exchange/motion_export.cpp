@@ -6,7 +6,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/clip_io.h"
-#include "render/video.h"
+#include "render/film/video.h"
 
 namespace marey::gui {
 namespace {

@@ -11,9 +11,9 @@
 #include "base/job.h"
 #include "experiment/recipe.h"
 #include "motion/skeleton_fit.h"
-#include "render/live_video.h"
-#include "render/recipe.h"
-#include "render/scene.h"
+#include "render/base/recipe.h"
+#include "render/film/live_video.h"
+#include "render/scene/scene.h"
 
 namespace marey::gui {
 

@@ -8,7 +8,7 @@
 #include "gui/common/paint_style.h"
 #include "gui/path/path_curve.h"
 
-#include "render/chart.h"
+#include "render/chart/chart.h"
 
 namespace marey::gui {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "motion/clip.h"
-#include "render/chart.h"
+#include "render/chart/chart.h"
 
 namespace marey::gui {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "render/chart.h"
+#include "render/chart/chart.h"
 
 namespace marey::gui {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/chart_frame.h"
+#include "render/chart/chart_frame.h"
 
 namespace marey::gui {
 

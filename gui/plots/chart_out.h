@@ -7,7 +7,7 @@
 #include <QWidget>
 #include <functional>
 
-#include "render/chart.h"
+#include "render/chart/chart.h"
 
 namespace marey::gui {
 

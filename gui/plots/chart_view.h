@@ -11,7 +11,7 @@
 
 #include "gui/plots/chart_hit.h"
 
-#include "render/chart_frame.h"
+#include "render/chart/chart_frame.h"
 
 namespace marey::gui {
 

@@ -7,7 +7,7 @@
 
 #include "gui/workspace/motions.h"
 
-#include "render/recipe.h"
+#include "render/base/recipe.h"
 
 namespace marey::gui {
 

@@ -9,7 +9,7 @@
 #include "gui/common/paint_style.h"
 #include "gui/path/current_path.h"
 
-#include "render/live_scene.h"
+#include "render/scene/live_scene.h"
 
 namespace marey::gui {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "model/scorer.h"
-#include "render/colours.h"
+#include "render/base/colours.h"
 
 namespace marey::gui {
 

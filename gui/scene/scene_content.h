@@ -9,7 +9,7 @@
 #include "gui/scene/motion_colouring.h"
 #include "gui/workspace/workspace.h"
 
-#include "render/live_scene.h"
+#include "render/scene/live_scene.h"
 
 namespace marey::gui {
 

@@ -5,7 +5,7 @@
 #include <QImage>
 #include <algorithm>
 
-#include "render/ticks.h"
+#include "render/chart/ticks.h"
 
 namespace marey::gui {
 namespace {

@@ -7,7 +7,7 @@
 #include "gui/common/paint_style.h"
 #include "gui/scene/scene_content.h"
 
-#include "render/image.h"
+#include "render/base/image.h"
 
 namespace marey::gui {
 

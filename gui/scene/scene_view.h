@@ -11,7 +11,7 @@
 #include "gui/workspace/contact_tolerance.h"
 #include <QVTKOpenGLNativeWidget.h>
 
-#include "render/live_scene.h"
+#include "render/scene/live_scene.h"
 
 namespace marey::gui {
 

@@ -6,7 +6,7 @@
 
 #include "gui/time/time_ruler.h"
 
-#include "render/ticks.h"
+#include "render/chart/ticks.h"
 
 namespace marey::gui {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/ticks.h"
+#include "render/chart/ticks.h"
 
 namespace marey::gui {
 namespace {

@@ -7,7 +7,7 @@
 #include "gui/common/paint_style.h"
 #include "gui/time/gait_rows.h"
 
-#include "render/chart.h"
+#include "render/chart/chart.h"
 
 namespace marey::gui {
 

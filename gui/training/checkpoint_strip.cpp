@@ -7,7 +7,7 @@
 #include "gui/common/paint_style.h"
 
 #include "base/error.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 
 namespace marey::gui {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "gui/training/training_run.h"
 
-#include "render/chart.h"
+#include "render/chart/chart.h"
 
 namespace marey::gui {
 

@@ -8,7 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "render/colours.h"
+#include "render/base/colours.h"
 
 namespace marey::gui {
 namespace {

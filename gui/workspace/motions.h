@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "experiment/sample_set.h"
-#include "render/colours.h"
+#include "render/base/colours.h"
 
 namespace marey::gui {
 

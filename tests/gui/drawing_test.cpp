@@ -7,8 +7,8 @@
 #include "gui/gui_support.h"
 #include "gui/scene/scene_view.h"
 
-#include "render/live_picture.h"
-#include "render/ssim.h"
+#include "render/base/ssim.h"
+#include "render/scene/live_picture.h"
 
 namespace marey::gui {
 namespace {

@@ -23,7 +23,7 @@
 #include "base/atomic_file.h"
 #include "base/json.h"
 #include "io/clip_io.h"
-#include "render/image.h"
+#include "render/base/image.h"
 
 namespace marey::gui {
 namespace {

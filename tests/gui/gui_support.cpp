@@ -7,7 +7,7 @@
 #include <QThread>
 #include <fstream>
 
-#include "render/ssim.h"
+#include "render/base/ssim.h"
 
 namespace marey::gui {
 

@@ -10,7 +10,7 @@
 #include "gui/shell/panels.h"
 #include <gtest/gtest.h>
 
-#include "render/image.h"
+#include "render/base/image.h"
 
 namespace marey::gui {
 

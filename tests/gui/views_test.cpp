@@ -18,7 +18,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "render/contacts.h"
+#include "render/scene/contacts.h"
 
 namespace marey::gui {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "render/ssim.h"
+#include "render/base/ssim.h"
 
 namespace marey::render {
 

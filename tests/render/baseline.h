@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/image.h"
+#include "render/base/image.h"
 
 namespace marey::render {
 

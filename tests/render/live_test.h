@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "render/live_scene.h"
+#include "render/scene/live_scene.h"
 
 namespace marey::render {
 

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "io/clip_io.h"
 #include "motion/walker.h"
-#include "render/image.h"
+#include "render/base/image.h"
 
 namespace marey::gui {
 namespace {

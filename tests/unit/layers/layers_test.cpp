@@ -40,49 +40,58 @@ const std::map<std::string, Floor> kHouse{
      {{"base", "motion", "model", "nn/engine", "nn/torch", "nn/processes"}, {"torch"}}},
     {"core/task", {{"base", "motion", "model"}, {}}},
     {"core/experiment", {{"base", "motion", "model", "stats", "io"}, {}}},
-    {"core/render",
-     {{"base", "motion", "stats"},
-      {"VTK::", "PkgConfig::CAIRO", "PkgConfig::PNG", "PkgConfig::EGL", "PkgConfig::LIBAV"}}},
-    {"core/report", {{"base", "motion", "io", "stats", "model", "experiment", "render"}, {"ZLIB"}}},
+    {"core/render/base", {{"base", "motion"}, {"PkgConfig::CAIRO", "PkgConfig::PNG"}}},
+    {"core/render/scene",
+     {{"base", "motion", "stats", "render/base"}, {"VTK::", "PkgConfig::EGL"}}},
+    {"core/render/chart", {{"base", "motion", "render/base"}, {"PkgConfig::CAIRO"}}},
+    {"core/render/film", {{"base", "motion", "render/base", "render/scene"}, {"PkgConfig::LIBAV"}}},
+    {"core/report",
+     {{"base", "motion", "io", "stats", "model", "experiment", "render/base", "render/chart",
+       "render/scene"},
+      {"ZLIB"}}},
     {"core/cli",
      {{"base", "ranks", "motion", "io", "stats", "nn/engine", "nn/torch", "model", "model/gradient",
-       "task", "experiment", "render", "report", "plugins"},
+       "task", "experiment", "render/base", "render/film", "render/scene", "report", "plugins"},
       {"CLI11", "dl"}}},
     {"plugins",
      {{"base", "pickle", "motion", "nn/engine", "nn/torch", "nn/flow", "model", "model/gradient",
        "plugins"},
       {"torch"}}},
-    {"gui/common", {{"base", "motion", "render"}, {"marey_qt"}}},
+    {"gui/common", {{"base", "motion", "render/base"}, {"marey_qt"}}},
     {"gui/workspace",
-     {{"base", "motion", "io", "stats", "model", "experiment", "render", "plugins", "gui/common"},
+     {{"base", "motion", "io", "stats", "model", "experiment", "render/base", "plugins",
+       "gui/common"},
       {"marey_qt"}}},
     {"gui/plots",
-     {{"base", "motion", "io", "stats", "model", "experiment", "render", "report", "gui/common",
-       "gui/workspace"},
+     {{"base", "motion", "io", "stats", "model", "experiment", "render/base", "render/chart",
+       "report", "gui/common", "gui/workspace"},
       {"marey_qt"}}},
     {"gui/path",
-     {{"base", "motion", "io", "stats", "model", "experiment", "render", "gui/common",
-       "gui/workspace", "gui/plots"},
+     {{"base", "motion", "io", "stats", "model", "experiment", "render/base", "render/chart",
+       "gui/common", "gui/workspace", "gui/plots"},
       {"marey_qt"}}},
     {"gui/scene",
-     {{"base", "motion", "stats", "model", "experiment", "render", "gui/common", "gui/workspace",
-       "gui/path"},
+     {{"base", "motion", "stats", "model", "experiment", "render/base", "render/chart",
+       "render/scene", "gui/common", "gui/workspace", "gui/path"},
       {"marey_qt", "VTK::"}}},
     {"gui/steer",
-     {{"base", "motion", "stats", "model", "experiment", "render", "gui/common", "gui/workspace"},
+     {{"base", "motion", "stats", "model", "experiment", "render/base", "gui/common",
+       "gui/workspace"},
       {"marey_qt"}}},
     {"gui/training",
-     {{"base", "model", "experiment", "render", "gui/common", "gui/workspace", "gui/plots"},
+     {{"base", "model", "experiment", "render/base", "render/chart", "render/scene", "gui/common",
+       "gui/workspace", "gui/plots"},
       {"marey_qt"}}},
     {"gui/time",
-     {{"base", "motion", "stats", "experiment", "render", "gui/common", "gui/workspace",
-       "gui/plots", "gui/scene"},
+     {{"base", "motion", "stats", "experiment", "render/base", "render/chart", "gui/common",
+       "gui/workspace", "gui/plots", "gui/scene"},
       {"marey_qt"}}},
     {"gui/document",
      {{"base", "motion", "io", "model", "experiment", "plugins", "gui/common", "gui/workspace"},
       {"marey_qt"}}},
     {"gui/exchange",
-     {{"base", "motion", "io", "experiment", "render", "gui/common", "gui/workspace", "gui/scene"},
+     {{"base", "motion", "io", "experiment", "render/base", "render/film", "render/scene",
+       "gui/common", "gui/workspace", "gui/scene"},
       {"marey_qt"}}},
     {"gui/shell",
      {{"base", "io", "model", "experiment", "report", "plugins", "gui/common", "gui/workspace",
@@ -299,17 +308,18 @@ TEST(TheRules, FindALinkUpwardsQtAndUnknownFolders) {
 
 TEST(TheRules, FindIncludesOfQtTorchAndVtk) {
   EXPECT_FALSE(mayUse("core/cli", "QString"));
-  EXPECT_FALSE(mayUse("core/render", "QtCore/QObject"));
+  EXPECT_FALSE(mayUse("core/render/scene", "QtCore/QObject"));
   EXPECT_FALSE(mayUse("plugins", "qobject.h"));
   EXPECT_FALSE(mayUse("core/stats", "torch/torch.h"));
-  EXPECT_FALSE(mayUse("core/render", "ATen/ATen.h"));
+  EXPECT_FALSE(mayUse("core/render/scene", "ATen/ATen.h"));
   EXPECT_FALSE(mayUse("core/report", "vtkRenderer.h"));
   EXPECT_FALSE(mayUse("gui/plots", "vtkRenderer.h"));
   EXPECT_FALSE(mayUse("gui/path", "QVTKOpenGLNativeWidget.h"));
   EXPECT_FALSE(mayUse("core/io", "motion/clip.h")) << "the house's own stand between quotes";
   EXPECT_FALSE(mayUse("core/nn/engine", "torch/torch.h"));
   EXPECT_TRUE(mayUse("core/nn/flow", "torch/torch.h"));
-  EXPECT_TRUE(mayUse("core/render", "vtkRenderer.h"));
+  EXPECT_TRUE(mayUse("core/render/scene", "vtkRenderer.h"));
+  EXPECT_FALSE(mayUse("core/render/chart", "vtkRenderer.h"));
   EXPECT_TRUE(mayUse("gui/shell", "QWidget"));
   EXPECT_TRUE(mayUse("core/io", "queue"));
   EXPECT_TRUE(mayUse("core/io", "sys/stat.h"));
@@ -332,6 +342,9 @@ TEST(TheRules, FindIncludesOfUpperFoldersFamiliesAndUnknownOnes) {
   EXPECT_FALSE(mayInclude("gui/path", "path/path_view.h")) << "no folder of the core";
   EXPECT_FALSE(mayInclude("gui/path", "gui/path_view.h"));
   EXPECT_TRUE(mayInclude("core/io", "motion/clip.h"));
+  EXPECT_FALSE(mayInclude("core/render/base", "render/scene/bodies.h"));
+  EXPECT_FALSE(mayInclude("core/render/chart", "render/scene/bodies.h"));
+  EXPECT_TRUE(mayInclude("core/render/chart", "render/base/image.h"));
   EXPECT_TRUE(mayInclude("core/cli", "families.h"));
   EXPECT_TRUE(mayInclude("plugins", "moglow/engine_model.h"));
   EXPECT_TRUE(mayInclude("gui/scene", "gui/workspace/workspace.h"));

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "motion/walker.h"
-#include "render/chart_frame.h"
+#include "render/chart/chart_frame.h"
 #include "stats/diversity.h"
 #include "stats/sample_distance.h"
 

@@ -250,7 +250,7 @@ QVariant MotionTree::branchData(const Branch& branch, int column, int role) cons
     const QString remarks = unread.empty() ? QString() : tr("  ⚠ see tip");
     return QStringLiteral("%1  (%2)%3%4").arg(name).arg(branch.rows).arg(state, remarks);
   }
-  if (role == Qt::DecorationRole) return swatch(group->colour());
+  if (role == Qt::DecorationRole) return swatch(render::colourOf(group->colourIndex));
   if (role == Qt::CheckStateRole) return state(branch, *group, &Motion::visible);
   return {};
 }

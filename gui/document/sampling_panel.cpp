@@ -19,6 +19,7 @@
 #include "gui/workspace/workspace.h"
 
 #include "experiment/edits.h"
+#include "render/base/colours.h"
 
 namespace marey::gui {
 namespace {

@@ -8,8 +8,9 @@
 #include <QPointer>
 #include <QSpinBox>
 
-#include "gui/exchange/motion_export.h"
 #include "gui/scene/scene_view.h"
+
+#include "report/motion_export.h"
 
 namespace marey::gui {
 

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "gui/common/jobs.h"
-#include "gui/exchange/import_files.h"
+
+#include "experiment/import_files.h"
 
 namespace marey::gui {
 
@@ -31,7 +32,7 @@ class ImportExaminer : public QObject {
   bool busy() const { return m_timer.isActive(); }
 
  Q_SIGNALS:
-  void listed(const marey::gui::ImportList& list);
+  void listed(const marey::ImportList& list);
   /// `file` is its number in the list. Only the last examination of a file is told.
   void examined(size_t file, const std::vector<marey::io::DoctorReport>& reports);
   /// No longer busy.

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "gui/common/paint_style.h"
-#include "gui/exchange/import_files.h"
+
+#include "experiment/import_files.h"
 
 namespace marey::gui {
 

@@ -6,9 +6,10 @@
 #include <functional>
 #include <optional>
 
-#include "gui/path/path_curve.h"
-#include "gui/path/path_edit.h"
 #include "gui/workspace/workspace.h"
+
+#include "experiment/path_curve.h"
+#include "motion/path_edit.h"
 
 namespace marey::gui {
 

@@ -4,25 +4,10 @@
 
 #include "gui/plots/motion_sets.h"
 
-#include "base/error.h"
-#include "model/training_pace.h"
+#include "experiment/natural_pace.h"
+#include "model/model_cache.h"
 
 namespace marey::gui {
-namespace {
-
-Spread spreadFrom(const PaceQuantiles& q) {
-  return {.minimum = q.lowest, .low = q.low, .high = q.high, .maximum = q.highest};
-}
-
-std::optional<TrainingPace> trainedPace(const std::string& file) {
-  try {
-    return readTrainingPace(file);
-  } catch (const Error&) {
-    return std::nullopt;  // sampling with it tells what is wrong
-  }
-}
-
-}  // namespace
 
 NaturalPace::NaturalPace(Workspace& workspace, QObject* parent)
     : QObject(parent), m_workspace(workspace) {
@@ -61,14 +46,10 @@ void NaturalPace::refresh() {
   m_workspace.jobs().start(
       Lane::Files, tr("Measure natural speeds and turns"),
       [models = m_models, clips = m_clips, result](Progress& progress) {
-        for (const Source& model : models)
-          if (const auto pace = trainedPace(model.file)) {
-            *result = PaceRange{.speedMS = spreadFrom(pace->speedMS),
-                                .turnRadS = spreadFrom(pace->turnRadS),
-                                .model = model.name};
-            return;
-          }
-        *result = paceOf(clips, progress);
+        std::vector<PaceModel> files;
+        files.reserve(models.size());
+        for (const Source& model : models) files.push_back({model.name, model.file});
+        *result = naturalPace(files, clips, progress);
       },
       [this, result, version] {
         if (m_version != version) return;

@@ -5,8 +5,9 @@
 #include <QObject>
 #include <optional>
 
-#include "gui/path/path_curve.h"
 #include "gui/workspace/workspace.h"
+
+#include "experiment/path_curve.h"
 
 namespace marey::gui {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "gui/common/paint_style.h"
-#include "gui/path/path_curve.h"
 
+#include "experiment/path_curve.h"
 #include "render/chart/chart.h"
 
 namespace marey::gui {

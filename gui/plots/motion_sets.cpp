@@ -55,7 +55,7 @@ std::vector<MotionSet> motionSets(const std::vector<MotionGroup>& groups, Compar
                   .name = labelOf(group),
                   .system = group.system,
                   .natural = group.natural(),
-                  .colour = group.colour(),
+                  .colour = render::colourOf(group.colourIndex),
                   .wanted = group.wanted,
                   .all = static_cast<int>(group.motions.size())};
     addUsed(set, group);

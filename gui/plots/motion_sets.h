@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "gui/workspace/motions.h"
+#include "experiment/motions.h"
+#include "render/base/colours.h"
 
 namespace marey::gui {
 

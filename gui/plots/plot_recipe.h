@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gui/workspace/motions.h"
-
+#include "experiment/motions.h"
 #include "render/base/recipe.h"
 
 namespace marey::gui {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "gui/scene/motion_colours.h"
+#include "gui/plots/motion_colours.h"
 #include "gui/workspace/workspace.h"
 
 namespace marey::gui {
@@ -18,12 +18,6 @@ struct ColourSource {
   ClipPtr clip;
   const ClipScore* score = nullptr;  ///< null: none
   bool operator==(const ColourSource&) const = default;
-};
-
-struct MotionColours {
-  std::optional<ScaleRange> scale;
-  /// One per frame of the clip; of what had no value there is none.
-  std::map<const Clip*, std::vector<render::Colour>> frames;
 };
 
 class MotionColouring : public QObject {
@@ -43,9 +37,5 @@ class MotionColouring : public QObject {
   MotionColours m_colours;
   int m_version = 0, m_job = 0;
 };
-
-/// The work itself. Throws CancelledError.
-MotionColours coloursByValue(const std::vector<std::pair<ClipPtr, std::optional<ClipScore>>>& from,
-                             ColourBy by, double modelFps, Progress& progress);
 
 }  // namespace marey::gui

@@ -3,6 +3,8 @@
 #include <QCoreApplication>
 #include <algorithm>
 
+#include "gui/workspace/motion_labels.h"
+
 #include "base/error.h"
 #include "motion/roles.h"
 #include "stats/footsteps.h"
@@ -124,14 +126,6 @@ QString groupLabel(const std::string& group, int shown) {
   return QStringLiteral("%1 (%2)").arg(QString::fromStdString(group)).arg(shown);
 }
 
-QString motionLabel(const MotionGroup& group, int index) {
-  const Motion& motion = group.motions.at(static_cast<size_t>(index));
-  if (group.natural() && motion.clip && !motion.clip->name.empty())
-    return QString::fromStdString(motion.clip->name);
-  return QStringLiteral("%1, %2 %3")
-      .arg(QString::fromStdString(group.name), tr("sample"), QString::number(index + 1));
-}
-
 SceneContent sceneContent(const Workspace& workspace, const SceneSettings& settings,
                           MotionColouring& colouring) {
   SceneContent out;
@@ -141,14 +135,15 @@ SceneContent sceneContent(const Workspace& workspace, const SceneSettings& setti
     const MotionGroup& group = *workspace.group(id.group);
     ++counts[id.group];
     out.motions.push_back({.clip = group.motions[static_cast<size_t>(id.index)].clip,
-                           .colour = group.colour(),
+                           .colour = render::colourOf(group.colourIndex),
                            .opacity = settings.opacity,
                            .highlighted = workspace.selected(id),
                            .label = motionLabel(group, id.index).toStdString()});
   }
   for (const MotionGroup& group : workspace.groups())
     if (const int count = counts[group.id]; count > 0)
-      out.legend.groups.push_back({group.colour(), groupLabel(group.name, count)});
+      out.legend.groups.push_back(
+          {render::colourOf(group.colourIndex), groupLabel(group.name, count)});
   if (settings.colourBy == ColourBy::Sample) {
     colourBySample(workspace, out);
     out.legend.note = tr("Colour: number of the sample, from dark to light");

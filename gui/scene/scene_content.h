@@ -58,7 +58,5 @@ SceneContent sceneContent(const Workspace& workspace, const SceneSettings& setti
 std::string naturalSystem(const Workspace& workspace, const SceneSettings& settings);
 /// A line of the legend: a set and how many of its motions are shown.
 QString groupLabel(const std::string& group, int shown);
-/// Title, unit and meaning for people; `index` is its number in the group.
-QString motionLabel(const MotionGroup& group, int index);
 
 }  // namespace marey::gui

@@ -7,11 +7,11 @@
 
 #include "families.h"
 #include "gui/common/file_dialogs.h"
-#include "gui/document/opened_files.h"
 #include "gui/shell/main_window.h"
 
 #include "base/error.h"
 #include "experiment/edits.h"
+#include "experiment/opened_files.h"
 #include "experiment/run.h"
 #include "io/clip_io.h"
 #include "model/model_card.h"

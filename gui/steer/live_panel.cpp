@@ -17,8 +17,8 @@
 #include "gui/common/paint_style.h"
 #include "gui/common/stick_view.h"
 #include "gui/steer/live_controls.h"
-#include "gui/steer/live_session.h"
 
+#include "experiment/steering/live_session.h"
 #include "stats/sample_distance.h"
 
 namespace marey::gui {

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "gui/scene/scene_content.h"
+#include "gui/workspace/motion_labels.h"
 
 #include "base/error.h"
 
@@ -53,7 +53,7 @@ std::vector<GaitRow> GaitRows::rows(const stats::ContactRule& rule) {
       const int joint = entry.feet[f];
       GaitRow row{.motion = motionLabel(group, id.index),
                   .foot = QString::fromStdString(clip->skeleton->names[static_cast<size_t>(joint)]),
-                  .colour = group.colour(),
+                  .colour = render::colourOf(group.colourIndex),
                   .contacts = {},
                   .seconds = (clip->frameCount() - 1) / clip->fps,
                   .first = f == 0};

@@ -9,6 +9,7 @@
 
 #include "gui/workspace/workspace.h"
 
+#include "render/base/colours.h"
 #include "stats/footsteps.h"
 
 namespace marey::gui {

@@ -209,7 +209,7 @@ class CheckpointPanel : public QWidget {
         if (group.recipe && !group.pinned && group.recipe->system.model == recipe.system.model &&
             group.recipe->path.name == path.name)
           old = group.id;
-      m_workspace.sample(recipe, old, colourIndexOf(m_run, checkpoint));
+      m_workspace.sample(recipe, old, render::stageIndex(stageOf(m_run, checkpoint)));
     }
   }
 

@@ -107,7 +107,7 @@ bool CheckpointStrip::current(const Checkpoint& checkpoint) const {
   const auto known = m_pictures.find(checkpoint.file);
   return group != nullptr && known != m_pictures.end() &&
          known->second.clip == group->motions.front().clip &&
-         known->second.colour == group->colour();
+         known->second.colour == render::colourOf(group->colourIndex);
 }
 
 bool CheckpointStrip::drawn(int checkpoint) const {
@@ -120,7 +120,8 @@ void CheckpointStrip::refresh() {
   if (!isVisible()) return;
   for (int i = 0; i < count(); ++i) {
     const Checkpoint& checkpoint = m_run.checkpoints[static_cast<size_t>(i)];
-    const QColor colour = toQColor(render::colourOf(colourIndexOf(m_run, checkpoint)));
+    const QColor colour =
+        toQColor(render::colourOf(render::stageIndex(stageOf(m_run, checkpoint))));
     const QPixmap picture = drawn(i)
                                 ? QPixmap::fromImage(m_pictures.at(checkpoint.file).image)
                                 : emptyPicture(colour, palette().color(QPalette::AlternateBase));
@@ -135,8 +136,8 @@ void CheckpointStrip::drawMissing() {
   for (const Checkpoint& checkpoint : m_run.checkpoints) {
     const MotionGroup* group = motionsOf(checkpoint);
     if (group == nullptr || current(checkpoint)) continue;
-    missing.push_back(
-        {checkpoint.file, group->motions.front().clip, group->wanted, group->colour()});
+    missing.push_back({checkpoint.file, group->motions.front().clip, group->wanted,
+                       render::colourOf(group->colourIndex)});
     // One that cannot be drawn is not tried again.
     m_pictures[checkpoint.file] = {missing.back().clip, missing.back().colour, {}};
   }

@@ -5,8 +5,10 @@
 #include <QListWidget>
 #include <map>
 
-#include "gui/training/training_run.h"
 #include "gui/workspace/workspace.h"
+
+#include "model/training_run.h"
+#include "render/base/colours.h"
 
 namespace marey::gui {
 

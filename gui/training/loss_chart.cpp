@@ -135,7 +135,8 @@ void LossChart::paintCheckpoints(QPainter& painter) const {
     painter.setPen(QPen(current ? inks.accent : inks.faintText, current ? 2 : 1, Qt::DashLine));
     painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()));
     painter.setPen(Qt::NoPen);
-    painter.setBrush(toQColor(render::colourOf(colourIndexOf(m_run, m_run.checkpoints[i]))));
+    painter.setBrush(
+        toQColor(render::colourOf(render::stageIndex(stageOf(m_run, m_run.checkpoints[i])))));
     painter.drawEllipse(QPointF(x, area.bottom()), current ? 6 : 5, current ? 6 : 5);
   }
 }

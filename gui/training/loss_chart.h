@@ -7,8 +7,7 @@
 #include <QWidget>
 #include <vector>
 
-#include "gui/training/training_run.h"
-
+#include "model/training_run.h"
 #include "render/chart/chart.h"
 
 namespace marey::gui {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "families.h"
+
 #include "base/error.h"
 #include "experiment/edits.h"
 
@@ -28,7 +30,7 @@ Workspace::Workspace(JobQueue& jobs, Experiment experiment, QObject* parent)
       m_jobs(jobs),
       m_history(experiment),
       m_saved(std::move(experiment)),
-      m_models(std::make_shared<ModelCache>()) {
+      m_models(std::make_shared<ModelCache>(modelFamilies())) {
   connect(&m_jobs, &JobQueue::failed, this, &Workspace::errorReported);
   connect(&m_jobs, &JobQueue::ended, this, &Workspace::jobEnded);
 }

@@ -9,12 +9,12 @@
 #include <memory>
 
 #include "gui/common/jobs.h"
-#include "gui/workspace/model_cache.h"
-#include "gui/workspace/motions.h"
 
 #include "experiment/document.h"
 #include "experiment/history.h"
+#include "experiment/motions.h"
 #include "experiment/run.h"
+#include "model/model_cache.h"
 
 namespace marey::gui {
 

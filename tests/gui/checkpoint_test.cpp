@@ -54,8 +54,8 @@ TEST_F(Checkpoints, HavePicturesThatSelectTheirMotions) {
   ASSERT_TRUE(waitUntil([&] { return strip->drawn(0) && strip->drawn(1) && m_jobs->idle(); }));
   const auto& groups = m_workspace->groups();
   ASSERT_EQ(groups.size(), 3U);
-  EXPECT_EQ(groups[1].colour(), render::colourOf(render::stageIndex(0.0)));
-  EXPECT_EQ(groups[2].colour(), render::colourOf(render::stageIndex(1.0)));
+  EXPECT_EQ(render::colourOf(groups[1].colourIndex), render::colourOf(render::stageIndex(0.0)));
+  EXPECT_EQ(render::colourOf(groups[2].colourIndex), render::colourOf(render::stageIndex(1.0)));
   const auto picture = [&](int i) { return strip->item(i)->icon().pixmap(132, 84).toImage(); };
   EXPECT_NE(picture(0), picture(1));
   strip->scrollToItem(strip->item(1));

@@ -16,7 +16,6 @@
 #include <fstream>
 
 #include "gui/exchange/export_dialog.h"
-#include "gui/exchange/motion_export.h"
 #include "gui/gui_support.h"
 #include <unistd.h>
 
@@ -24,6 +23,7 @@
 #include "base/json.h"
 #include "io/clip_io.h"
 #include "render/base/image.h"
+#include "report/motion_export.h"
 
 namespace marey::gui {
 namespace {

@@ -10,7 +10,6 @@
 #include "gui/gui_support.h"
 #include "gui/plots/chart_view.h"
 #include "gui/scene/scene_view.h"
-#include "gui/steer/gamepad.h"
 #include "gui/time/gait_rows.h"
 #include "gui/workspace/contact_tolerance.h"
 #include <fcntl.h>
@@ -18,6 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "experiment/steering/gamepad.h"
 #include "render/scene/contacts.h"
 
 namespace marey::gui {

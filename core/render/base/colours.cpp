@@ -36,11 +36,12 @@ Colour naturalColour() {
 }
 
 Colour colourOf(int systemIndex) {
+  if (systemIndex < 0) return naturalColour();
   if (systemIndex >= stageStep && systemIndex % stageStep == 0)
     return scaleColour(std::lerp(firstStage, lastStage,
                                  static_cast<double>(systemIndex / stageStep - 1) / stages));
   const int count = static_cast<int>(systemColours.size());
-  return systemColours[static_cast<size_t>(((systemIndex % count) + count) % count)];
+  return systemColours[static_cast<size_t>(systemIndex % count)];
 }
 
 int stageIndex(double share) {

@@ -15,7 +15,7 @@ struct Colour {
 Colour naturalColour();
 /// System 0, 1, 2, ... of a comparison: the palette of Okabe and Ito (2008), "Color universal
 /// design", without black and yellow (too light on white), then the same hues lighter or darker;
-/// repeats after twelve.
+/// repeats after twelve. Below 0: natural motion.
 Colour colourOf(int systemIndex);
 /// For stages of one thing, such as checkpoints of a training: an index beyond those of systems
 /// that colourOf gives a colour of scaleColour, darker for an early stage (0) than for a late (1).

@@ -1,17 +1,16 @@
-#include "gui/exchange/import_files.h"
+#include "experiment/import_files.h"
 
 #include <algorithm>
 #include <optional>
 #include <set>
 #include <utility>
 
-#include "gui/exchange/motion_export.h"
-
 #include "base/atomic_file.h"
+#include "experiment/file_names.h"
 #include "io/clip_io.h"
 #include "io/inputs.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 namespace fs = std::filesystem;
 
@@ -108,4 +107,4 @@ std::vector<std::string> convertOverridden(const std::vector<ImportFile>& files,
   return out;
 }
 
-}  // namespace marey::gui
+}  // namespace marey

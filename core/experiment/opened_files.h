@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace marey::gui {
+namespace marey {
 
 struct OpenedFiles {
   std::vector<std::string> documents, paths, models;
@@ -15,4 +15,4 @@ struct OpenedFiles {
 /// lacks). Never throws: what cannot be read is told by whoever opens it.
 OpenedFiles sortOpened(const std::vector<std::string>& files);
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -1,4 +1,4 @@
-#include "gui/path/path_curve.h"
+#include "experiment/path_curve.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 
 TEST(PathCurve, ACircleIsWalkedAtOneSpeedAndOneTurnRate) {
@@ -63,4 +63,4 @@ TEST(PathCurve, StrainTellsRareFromUnseen) {
 }
 
 }  // namespace
-}  // namespace marey::gui
+}  // namespace marey

@@ -1,4 +1,4 @@
-#include "gui/path/path_curve.h"
+#include "experiment/path_curve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "stats/sample_distance.h"
 
-namespace marey::gui {
+namespace marey {
 PathCurve curveOf(std::vector<RootFrame> frames, double fps) {
   PathCurve out{.frames = std::move(frames), .fps = fps, .speedMS = {}, .turnRadS = {}};
   const size_t count = out.frames.size();
@@ -70,4 +70,4 @@ std::vector<Strain> strainsOf(const PathCurve& curve, const std::optional<PaceRa
   return out;
 }
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -1,4 +1,4 @@
-#include "gui/training/training_run.h"
+#include "model/training_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "render/base/colours.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 namespace fs = std::filesystem;
 
@@ -88,14 +87,14 @@ TrainingRun readTrainingRun(const fs::path& folder) {
   return out;
 }
 
-int colourIndexOf(const TrainingRun& run, const Checkpoint& checkpoint) {
+double stageOf(const TrainingRun& run, const Checkpoint& checkpoint) {
   int64_t first = checkpoint.step, last = checkpoint.step;
   for (const Checkpoint& other : run.checkpoints) {
     first = std::min(first, other.step);
     last = std::max(last, other.step);
   }
   const auto steps = static_cast<double>(std::max<int64_t>(1, last - first));
-  return render::stageIndex(static_cast<double>(checkpoint.step - first) / steps);
+  return static_cast<double>(checkpoint.step - first) / steps;
 }
 
-}  // namespace marey::gui
+}  // namespace marey

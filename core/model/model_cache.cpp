@@ -1,14 +1,12 @@
-#include "gui/workspace/model_cache.h"
+#include "model/model_cache.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
-#include "families.h"
-
 #include "base/error.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 namespace fs = std::filesystem;
 
@@ -31,7 +29,7 @@ std::shared_ptr<const MotionModel> ModelCache::model(const std::string& file) {
     std::rotate(m_entries.begin(), found, found + 1);
     return m_entries.front().model;
   }
-  m_entries.insert(m_entries.begin(), {stamp, loadModel(file, modelFamilies())});
+  m_entries.insert(m_entries.begin(), {stamp, loadModel(file, m_families)});
   if (m_entries.size() > kMostModels) m_entries.pop_back();
   return m_entries.front().model;
 }
@@ -42,4 +40,4 @@ void requireRate(const MotionModel& model, const std::string& file, double fps) 
                model.info().features.fps);
 }
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -1,4 +1,4 @@
-#include "gui/steer/live_session.h"
+#include "experiment/steering/live_session.h"
 
 #include <algorithm>
 #include <utility>
@@ -7,7 +7,7 @@
 #include "model/sampler.h"
 #include "model/scorer.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 constexpr std::chrono::milliseconds kReadPadEvery{5};
 /// Axes of a pad: left stick, right stick.
@@ -166,4 +166,4 @@ MotionGroup keptGroup(const LiveRollout& rollout, const ExperimentSystem& system
           .motions = {motion}};
 }
 
-}  // namespace marey::gui
+}  // namespace marey

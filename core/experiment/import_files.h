@@ -7,7 +7,7 @@
 #include "base/job.h"
 #include "io/doctor.h"
 
-namespace marey::gui {
+namespace marey {
 
 struct ImportFile {
   std::string path;
@@ -37,4 +37,4 @@ ImportList importFiles(const std::vector<std::string>& given);
 std::vector<std::string> convertOverridden(const std::vector<ImportFile>& files,
                                            const std::filesystem::path& folder, Progress& progress);
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -1,4 +1,4 @@
-#include "gui/document/opened_files.h"
+#include "experiment/opened_files.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/json.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 
 std::string endingOf(const std::string& file) {
@@ -40,4 +40,4 @@ OpenedFiles sortOpened(const std::vector<std::string>& files) {
   return out;
 }
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace marey::gui {
+namespace marey {
 
 struct GamepadState {
   bool connected = false;
@@ -40,4 +40,4 @@ class Gamepad {
   GamepadState m_state;
 };
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -1,9 +1,13 @@
 // Colours of motions by a value of every frame, on a scale that colour-blind people read too.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "base/job.h"
+#include "experiment/motions.h"
 #include "model/scorer.h"
 #include "render/base/colours.h"
 
@@ -29,5 +33,15 @@ std::vector<double> likelihoodPerFrame(const Clip& clip, const ClipScore& score,
 
 /// Floor speed of the root, m/s at every frame.
 std::vector<double> rootSpeeds(const Clip& clip);
+
+struct MotionColours {
+  std::optional<ScaleRange> scale;
+  /// One per frame of the clip; of what had no value there is none.
+  std::map<const Clip*, std::vector<render::Colour>> frames;
+};
+
+/// Of motions with their scores; `modelFps` is the rate of those. Throws CancelledError.
+MotionColours coloursByValue(const std::vector<std::pair<ClipPtr, std::optional<ClipScore>>>& from,
+                             ColourBy by, double modelFps, Progress& progress);
 
 }  // namespace marey::gui

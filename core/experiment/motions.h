@@ -1,4 +1,4 @@
-// What the window shows: natural clips and sample sets, as plain values.
+// What is looked at together: natural clips and sample sets, as plain values.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "experiment/sample_set.h"
-#include "render/base/colours.h"
 
-namespace marey::gui {
+namespace marey {
 
 struct Motion {
   ClipPtr clip;
@@ -44,9 +43,6 @@ struct MotionGroup {
   bool natural() const { return colourIndex < 0; }
   /// One or more motions along the control of every natural clip, in their order.
   bool heldOut() const { return recipe && recipe->heldOut; }
-  render::Colour colour() const {
-    return natural() ? render::naturalColour() : render::colourOf(colourIndex);
-  }
 };
 
 /// The file of a recipe's model.
@@ -87,4 +83,4 @@ inline FrameSpan framesIn(const Clip& clip, const std::optional<TimeRange>& rang
                    static_cast<int>(std::floor(range->endS * clip.fps + slack)) + 1)};
 }
 
-}  // namespace marey::gui
+}  // namespace marey

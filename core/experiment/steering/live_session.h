@@ -11,12 +11,11 @@
 #include <thread>
 #include <vector>
 
-#include "gui/steer/gamepad.h"
-#include "gui/workspace/motions.h"
-
 #include "experiment/live_rollout.h"
+#include "experiment/motions.h"
+#include "experiment/steering/gamepad.h"
 
-namespace marey::gui {
+namespace marey {
 
 using LiveClock = std::chrono::steady_clock;
 
@@ -89,4 +88,4 @@ class LiveSession {
 MotionGroup keptGroup(const LiveRollout& rollout, const ExperimentSystem& system,
                       SampleRecipe recipe, int colourIndex);
 
-}  // namespace marey::gui
+}  // namespace marey

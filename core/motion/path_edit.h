@@ -8,7 +8,7 @@
 
 #include "motion/path.h"
 
-namespace marey::gui {
+namespace marey {
 
 /// Slower than this a path would take for ever.
 inline constexpr double kSlowestMS = 0.05;
@@ -66,4 +66,4 @@ LinePlace nearestOnLine(const std::vector<WayPoint>& points, double x, double z)
 std::vector<WayPoint> fitWayPoints(const std::vector<RootFrame>& frames, double fps,
                                    double everyS = 1.0);
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -1,19 +1,20 @@
 // Exports, imports and training runs as the window's dialogs handle them.
-#include "gui/document/opened_files.h"
-#include "gui/exchange/import_files.h"
-#include "gui/exchange/motion_export.h"
-#include "gui/training/training_run.h"
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "base/archive.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "experiment/file_names.h"
+#include "experiment/import_files.h"
+#include "experiment/opened_files.h"
 #include "io/clip_io.h"
+#include "model/training_run.h"
 #include "motion/walker.h"
 #include "render/base/image.h"
+#include "report/motion_export.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 namespace fs = std::filesystem;
 
@@ -200,9 +201,11 @@ TEST_F(PanelFiles, ATrainingRunIsReadFromItsFolder) {
   EXPECT_EQ(run.checkpoints[1].name, "step 200");
   EXPECT_EQ(run.checkpoints[2].name, "best (step 200)");
   EXPECT_EQ(run.checkpoints[3].name, "last (step 300)");
+  const double stages[] = {0.0, 0.5, 0.5, 1.0};
+  for (size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(stageOf(run, run.checkpoints[i]), stages[i]);
   writeFileAtomically(m_folder / "log.csv", "step,seconds,\n1,2\n");
   EXPECT_THROW(readTrainingRun(m_folder), InputError);
 }
 
 }  // namespace
-}  // namespace marey::gui
+}  // namespace marey

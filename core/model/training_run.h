@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace marey::gui {
+namespace marey {
 
 /// A row of log.csv; losses in the run's unit, NaN where there was nothing to measure.
 struct LossRow {
@@ -30,7 +30,7 @@ struct TrainingRun {
 /// Throws FileError, or InputError naming the line of a log that is none.
 TrainingRun readTrainingRun(const std::filesystem::path& folder);
 
-/// Of render::colourOf: checkpoints go from dark to light with their steps.
-int colourIndexOf(const TrainingRun& run, const Checkpoint& checkpoint);
+/// Where a checkpoint stands among those of its run by its step: 0 for the first, 1 for the last.
+double stageOf(const TrainingRun& run, const Checkpoint& checkpoint);
 
-}  // namespace marey::gui
+}  // namespace marey

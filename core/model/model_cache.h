@@ -3,16 +3,19 @@
 
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "model/model_family.h"
 
-namespace marey::gui {
+namespace marey {
 
 /// Thread-safe.
 class ModelCache {
  public:
+  /// The families must outlive the cache.
+  explicit ModelCache(std::span<const ModelFamily> families) : m_families(families) {}
   /// The model of a file as it is now. Throws FileError or InputError.
   std::shared_ptr<const MotionModel> model(const std::string& file);
   /// Differs for other files, and for a file that was written anew.
@@ -23,6 +26,7 @@ class ModelCache {
     std::string stamp;
     std::shared_ptr<const MotionModel> model;
   };
+  std::span<const ModelFamily> m_families;
   std::mutex m_mutex;
   std::vector<Entry> m_entries;  ///< the one used last in front
 };
@@ -30,4 +34,4 @@ class ModelCache {
 /// Throws InputError unless a model has the document's frame rate.
 void requireRate(const MotionModel& model, const std::string& file, double fps);
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -1,11 +1,10 @@
-#include "gui/scene/motion_colours.h"
+#include "gui/plots/motion_colours.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "gui/path/path_curve.h"
-
+#include "experiment/path_curve.h"
 #include "motion/roles.h"
 
 namespace marey::gui {
@@ -55,6 +54,26 @@ std::vector<double> likelihoodPerFrame(const Clip& clip, const ClipScore& score,
 
 std::vector<double> rootSpeeds(const Clip& clip) {
   return curveOf(floorTrack(clip), clip.fps).speedMS;
+}
+
+MotionColours coloursByValue(const std::vector<std::pair<ClipPtr, std::optional<ClipScore>>>& from,
+                             ColourBy by, double modelFps, Progress& progress) {
+  std::vector<std::vector<double>> values;
+  std::vector<double> all;
+  for (const auto& [clip, score] : from) {
+    progress.throwIfCancelled();
+    if (by == ColourBy::Speed)
+      values.push_back(rootSpeeds(*clip));
+    else
+      values.push_back(score ? likelihoodPerFrame(*clip, *score, modelFps) : std::vector<double>{});
+    all.insert(all.end(), values.back().begin(), values.back().end());
+  }
+  MotionColours out{.scale = middleRange(std::move(all)), .frames = {}};
+  for (size_t i = 0; out.scale && i < from.size(); ++i) {
+    progress.throwIfCancelled();
+    if (!values[i].empty()) out.frames[from[i].first.get()] = coloursOf(values[i], *out.scale);
+  }
+  return out;
 }
 
 }  // namespace marey::gui

@@ -1,14 +1,15 @@
-#include "gui/exchange/motion_export.h"
+#include "report/motion_export.h"
 
 #include <algorithm>
 #include <set>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "experiment/file_names.h"
 #include "io/clip_io.h"
 #include "render/film/video.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 namespace fs = std::filesystem;
 
@@ -145,20 +146,6 @@ bool isPicture(ExportFormat format) {
   return isVideo(format) || format == ExportFormat::Still;
 }
 
-std::string safeName(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '_';
-    if (plain)
-      out += c;
-    else if (!out.empty() && out.back() != '_')
-      out += '_';
-  }
-  while (!out.empty() && out.back() == '_') out.pop_back();
-  return out.empty() ? "motion" : out;
-}
-
 std::vector<ExportItem> exportItems(const Experiment& experiment,
                                     const std::vector<MotionGroup>& groups,
                                     const std::vector<MotionId>& ids,
@@ -180,7 +167,7 @@ std::vector<ExportItem> exportItems(const Experiment& experiment,
                    .name = name,
                    .group = group->name,
                    .legend = group->natural() ? group->name : group->system,
-                   .colour = group->colour(),
+                   .colour = render::colourOf(group->colourIndex),
                    .wanted = group->wanted,
                    .origin = originOf(*group),
                    .recipe = recipeOf(hash, *group, id.index, range)});
@@ -245,4 +232,4 @@ ExportResult exportMotions(const ExportRequest& request, Progress& progress) {
                                    : exportClips(request, progress);
 }
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -6,16 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "gui/workspace/motions.h"
-
 #include "base/job.h"
+#include "experiment/motions.h"
 #include "experiment/recipe.h"
 #include "motion/skeleton_fit.h"
 #include "render/base/recipe.h"
 #include "render/film/live_video.h"
 #include "render/scene/scene.h"
 
-namespace marey::gui {
+namespace marey {
 
 enum class ExportFormat { Mp4, WebM, Gif, PngFrames, Still, Bvh, Gltf, Glb, Npz, Csv };
 
@@ -62,8 +61,6 @@ struct ExportResult {
   std::optional<FitResidual> fit;            ///< over all clips whose rotations had to be fitted
 };
 
-/// ASCII letters, digits, '-' and '_'; runs of anything else become one '_'. Never empty.
-std::string safeName(const std::string& text);
 /// The motions of these ids under names that differ; those with nothing in the range are left out.
 /// No motion is copied.
 std::vector<ExportItem> exportItems(const Experiment& experiment,
@@ -80,4 +77,4 @@ render::Recipe pictureRecipe(const ExportRequest& request);
 /// UsageError, CancelledError.
 ExportResult exportMotions(const ExportRequest& request, Progress& progress);
 
-}  // namespace marey::gui
+}  // namespace marey

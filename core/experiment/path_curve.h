@@ -11,7 +11,7 @@
 #include "motion/clip.h"
 #include "motion/features.h"
 
-namespace marey::gui {
+namespace marey {
 
 /// Values at every frame of a path; that of the first frame repeats the second.
 struct PathCurve {
@@ -53,4 +53,4 @@ Strain strainOf(double value, const Spread& natural);
 /// The stronger one of speed and turn rate at every frame.
 std::vector<Strain> strainsOf(const PathCurve& curve, const std::optional<PaceRange>& natural);
 
-}  // namespace marey::gui
+}  // namespace marey

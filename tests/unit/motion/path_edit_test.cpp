@@ -1,4 +1,4 @@
-#include "gui/path/path_edit.h"
+#include "motion/path_edit.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -152,4 +152,4 @@ TEST(PathEdit, AShortMotionGetsTwoWayPoints) {
 }
 
 }  // namespace
-}  // namespace marey::gui
+}  // namespace marey

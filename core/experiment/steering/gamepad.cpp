@@ -1,4 +1,4 @@
-#include "gui/steer/gamepad.h"
+#include "experiment/steering/gamepad.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -9,7 +9,7 @@
 #include <linux/joystick.h>
 #include <unistd.h>
 
-namespace marey::gui {
+namespace marey {
 namespace {
 constexpr std::chrono::seconds kLookEvery{1};
 constexpr double kFull = 32767.0, kDead = 0.12;
@@ -69,4 +69,4 @@ const GamepadState& Gamepad::poll() {
   return m_state;
 }
 
-}  // namespace marey::gui
+}  // namespace marey

@@ -1,4 +1,4 @@
-#include "gui/path/path_edit.h"
+#include "motion/path_edit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 
-namespace marey::gui {
+namespace marey {
 namespace {
 
 /// Two way-points in time are at least so far apart.
@@ -192,4 +192,4 @@ std::vector<WayPoint> fitWayPoints(const std::vector<RootFrame>& frames, double 
   return out;
 }
 
-}  // namespace marey::gui
+}  // namespace marey

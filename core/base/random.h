@@ -20,6 +20,7 @@ enum class RandomStage : uint32_t {
   StudentT = 6,
   Test = 7,
   Observation = 8,
+  Control = 9,
 };
 
 /// The raw block function: counter (4 words), key (2 words) -> 4 random words.

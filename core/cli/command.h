@@ -63,7 +63,8 @@ void addConvertCommand(CLI::App& app, Context& context);
 void addPrepareCommand(CLI::App& app, Context& context);
 void addTrainCommand(CLI::App& app, Context& context);
 void addSampleCommand(CLI::App& app, Context& context);
-void addPredictCommand(CLI::App& app, Context& context);
+/// One for every task but that of `sample`.
+void addTaskCommands(CLI::App& app, Context& context);
 void addScoreCommand(CLI::App& app, Context& context);
 void addAnalyzeCommand(CLI::App& app, Context& context);
 void addReportCommand(CLI::App& app, Context& context);

@@ -27,7 +27,7 @@ void addCommands(CLI::App& app, Context& context) {
   addPrepareCommand(app, context);
   addTrainCommand(app, context);
   addSampleCommand(app, context);
-  addPredictCommand(app, context);
+  addTaskCommands(app, context);
   addScoreCommand(app, context);
   addAnalyzeCommand(app, context);
   addReportCommand(app, context);

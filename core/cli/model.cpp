@@ -38,6 +38,7 @@ Json infoJson(const ModelInfo& info) {
   out["joints"] = info.skeleton ? info.skeleton->names : std::vector<std::string>{};
   out["fps"] = info.features.fps;
   out["layout"] = info.features.layout;
+  if (info.knowsControl()) out["control"] = toJson(info.features.control);
   out["hash"] = info.hash;
   out["provenance"] = info.provenance;
   out["observation"] = info.observation.none() ? Json() : toJson(info.observation);
@@ -72,6 +73,7 @@ void runInfo(const Options& o, const Context& context) {
     text += info.standardiser.empty()
                 ? "no standardiser: poses and likelihoods are in standardised units\n"
                 : "with standardiser\n";
+    if (info.knowsControl()) text += "control: " + summaryOf(info.features.control) + "\n";
     text += floorText(info) + "\n";
     text += "provenance: " + info.provenance.dump(2) + "\n";
     const ModelAdvice advice = modelAdvice(o.model);

@@ -3,7 +3,9 @@
 #include <set>
 
 #include "cli/command.h"
+#include "cli/control_options.h"
 #include "cli/readers.h"
+#include "io/annotation_files.h"
 #include "model/data_set.h"
 #include "motion/representation/representation.h"
 
@@ -14,6 +16,7 @@ struct Options {
   std::vector<std::string> sources, test;
   std::string out;
   PrepareOptions prepare;
+  ControlDeclared control;
   io::ReadOptions read;
 };
 
@@ -70,6 +73,7 @@ Json resultOf(const Options& o, const DataSet& data, const std::vector<Clip>& tr
           {"test_windows", windowCount(data.test, o.prepare)},
           {"pose_dim", data.poseDim()},
           {"control_dim", data.controlDim()},
+          {"control", toJson(data.options.features.control)},
           {"layout", data.options.features.layout},
           {"rotations_fitted", fitted.clips},
           {"rotations_fitted_within_m", fitted.mostM},
@@ -81,7 +85,7 @@ Json resultOf(const Options& o, const DataSet& data, const std::vector<Clip>& tr
           {"out", o.out}};
 }
 
-void run(const Options& o, const Context& context) {
+void run(Options& o, const Context& context) {
   io::Inputs train = io::findInputs(o.sources), test;
   if (!o.test.empty()) {
     std::vector<std::string> lists;
@@ -100,8 +104,11 @@ void run(const Options& o, const Context& context) {
   Progress readTrain = reading.part(0.0, 0.9), readTest = reading.part(0.9, 1.0);
   io::InputReport report(train);
   report.add(io::InputReport(test));
-  const auto trainClips = readAll(train, o.read, report, readTrain);
-  const auto testClips = readAll(test, o.read, report, readTest);
+  auto trainClips = readAll(train, o.read, report, readTrain);
+  auto testClips = readAll(test, o.read, report, readTest);
+  o.prepare.features.control = layoutOf(o.control);
+  io::readSignals(trainClips, o.prepare.features.control);
+  io::readSignals(testClips, o.prepare.features.control);
   for (const auto* clips : {&trainClips, &testClips})
     for (const Clip& clip : *clips) report.resample(clip, o.prepare.features.fps);
   DataSet data = prepareDataSet(trainClips, testClips, o.prepare, preparing);
@@ -115,11 +122,12 @@ void run(const Options& o, const Context& context) {
   context.print(
       result,
       fmt::format("{}: {} training clips ({:.1f} min, {} windows with augmentation), {} test clips "
-                  "({:.1f} min, {} windows); {} pose and {} control values per frame at {} fps",
+                  "({:.1f} min, {} windows); {} pose and {} control values per frame at {} fps\n"
+                  "control: {}",
                   o.out, trainClips.size(), secondsOf(trainClips) / 60,
                   windowCount(data.train, o.prepare), testClips.size(), secondsOf(testClips) / 60,
                   windowCount(data.test, o.prepare), data.poseDim(), data.controlDim(),
-                  o.prepare.features.fps) +
+                  o.prepare.features.fps, summaryOf(data.options.features.control)) +
           fittedOf(data).text());
 }
 
@@ -147,8 +155,13 @@ void addPrepareCommand(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_flag("--mirror,!--no-mirror", p.mirror,
                     "Augment with left and right swapped (default on)");
-  command->add_flag("--reverse,!--no-reverse", p.reverse,
-                    "Augment with time reversed (default on)");
+  auto* reverse = command->add_flag("--reverse,!--no-reverse", p.reverse,
+                                    "Augment with time reversed (default on, but off with --types "
+                                    "and --signal: a walk backwards in time is no walk)");
+  addControlDeclared(*command, o->control);
+  command->parse_complete_callback([o, reverse] {
+    if (o->control.hasTime() && reverse->count() == 0) o->prepare.reverse = false;
+  });
   std::string layouts = "What a pose is made of";
   for (const Representation& r : representations())
     layouts += fmt::format("; {}: {}", r.name, r.description);

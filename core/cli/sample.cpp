@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "cli/command.h"
+#include "cli/control_options.h"
 #include "cli/fit_report.h"
 #include "cli/readers.h"
 #include "experiment/path_choice.h"
@@ -21,6 +22,7 @@ namespace {
 struct Options {
   std::string model, out, format = "bvh", start = "mean", weights = "float32";
   PathChoice path;
+  ControlAsked control;
   int samples = 1;
   bool resume = false;
   double temperature = 1.0, warmUp = 1.0;
@@ -31,6 +33,7 @@ Json recipe(const Options& o, const MotionModel& model, const Context& context) 
   out["command"] = context.commandLine;
   out["model"] = model.info().variant;
   out["path"] = o.path.path;
+  addTo(out, o.path.control);
   out["start"] = o.start;
   out["warm_up_s"] = o.warmUp;
   out["weights"] = o.weights;
@@ -56,6 +59,7 @@ void run(Options& o, Context& context) {
   o.path.startFromClip = o.start == "clip";
   const auto model =
       loadModel(o.model, modelFamilies(), {.weights = weightPrecisionNamed(o.weights)});
+  o.path.control = choiceOf(o.control, model->info().features.control);
   io::InputReport report;
   SampleRequest request = requestFor(*model, o.path, report);
   request.samples = o.samples;
@@ -113,6 +117,7 @@ void addSampleCommand(CLI::App& app, Context& context) {
                    "circle, figure-eight), "
                    "clip:FILE (that clip's own path) or a path file (JSON, or CSV with time,x,z)")
       ->required();
+  addControlAsked(*command, o->control);
   command->add_option("-n,--samples", o->samples, "Number of motions")
       ->check(CLI::Range(1, 10000000))
       ->capture_default_str();

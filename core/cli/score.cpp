@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/readers.h"
 #include "experiment/packed_motion.h"
+#include "io/annotation_files.h"
 #include "model/likelihood.h"
 #include "model/pose_units.h"
 
@@ -160,6 +161,7 @@ std::vector<std::string> scoreShare(const Options& o, const MotionModel& model,
     std::vector<Clip> clips = reports.emplace_back().read(files[i], o.read);
     reports.back().throwIfFailed();
     leaveOthersOut(model.info(), clips, reports.back());
+    io::readSignals(clips, model.info().features.control);
     for (const Clip& clip : clips) reports.back().resample(clip, model.info().features.fps);
     clipsOf.push_back(clips.size());
     std::move(clips.begin(), clips.end(), std::back_inserter(waiting));

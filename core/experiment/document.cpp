@@ -42,6 +42,7 @@ Experiment experimentFromJson(const Json& value, const std::string& origin) {
   out.naturalLeftOut = reader.optional("natural_left_out", out.naturalLeftOut);
   out.systems = namedList(reader, "systems", systemFromJson);
   out.paths = namedList(reader, "paths", pathFromJson);
+  out.cases = namedList(reader, "cases", caseFromJson);
   out.samples = reader.optional("samples", out.samples);
   out.heldOutSamples = reader.optional("held_out_samples", out.heldOutSamples);
   out.seed = reader.optional("seed", out.seed);
@@ -85,6 +86,7 @@ Json withoutView(const Experiment& e) {
               {"fps", e.fps},
               {"feet", e.feet},
               {"tolerance_step_cm_s", e.toleranceStepCmS}};
+  for (const ExperimentCase& one : e.cases) out["cases"].push_back(toJson(one));
   if (e.against != Experiment().against) out["against"] = e.against;
   // Documents that leave nothing out keep the hash that they had.
   if (!e.naturalLeftOut.empty()) out["natural_left_out"] = e.naturalLeftOut;
@@ -95,9 +97,9 @@ Json withoutView(const Experiment& e) {
 
 bool Experiment::operator==(const Experiment& other) const {
   const auto key = [](const Experiment& e) {
-    return std::tie(e.title, e.notes, e.natural, e.naturalLeftOut, e.systems, e.paths, e.samples,
-                    e.heldOutSamples, e.seed, e.fps, e.feet, e.toleranceStepCmS, e.against,
-                    e.folder);
+    return std::tie(e.title, e.notes, e.natural, e.naturalLeftOut, e.systems, e.paths, e.cases,
+                    e.samples, e.heldOutSamples, e.seed, e.fps, e.feet, e.toleranceStepCmS,
+                    e.against, e.folder);
   };
   return key(*this) == key(other);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "experiment/experiment_case.h"
 #include "experiment/parts.h"
 #include "experiment/view_state.h"
 
@@ -23,8 +24,9 @@ struct Experiment {
   std::vector<std::string> naturalLeftOut;
   std::vector<ExperimentSystem> systems;
   std::vector<ExperimentPath> paths;
-  int samples = 8;         ///< per path
-  int heldOutSamples = 1;  ///< along the control of each natural clip; 0: none
+  std::vector<ExperimentCase> cases;  ///< tasks on the natural clips
+  int samples = 8;                    ///< per path
+  int heldOutSamples = 1;             ///< along the control of each natural clip; 0: none
   uint64_t seed = 1;
   double fps = 20.0;
   std::string feet;  ///< joint names; empty: found by name

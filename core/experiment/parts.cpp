@@ -30,6 +30,7 @@ ExperimentPath pathFromJson(const Json& value, const std::string& origin,
     out.path = reader.required<std::string>("path");
     out.seconds = reader.optional("seconds", out.seconds);
   }
+  out.control = controlChoiceFrom(reader);
   const auto start = reader.optional<std::string>("start", "mean");
   reader.finish();
   if (start != "mean" && start != "clip")
@@ -50,6 +51,7 @@ Json toJson(const ExperimentPath& path) {
   out["name"] = path.name;
   out["seconds"] = path.seconds;
   if (path.startFromClip) out["start"] = "clip";
+  addTo(out, path.control);
   return out;
 }
 

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "base/json.h"
+#include "base/json_lists.h"
+#include "experiment/control_choice.h"
 #include "motion/path.h"
 
 namespace marey {
@@ -26,6 +27,7 @@ struct ExperimentPath {
   /// 0: a preset's usual 10 s, else as long as the clip or path takes.
   double seconds = 10.0;
   bool startFromClip = false;  ///< clip:FILE only: its first frames start the motion
+  ControlChoice control = {};
   bool followsClip() const { return wayPoints.empty() && path.starts_with("clip:"); }
   bool operator==(const ExperimentPath&) const = default;
 };
@@ -38,26 +40,5 @@ ExperimentPath pathFromJson(const Json& value, const std::string& origin,
                             const std::string& prefix);
 Json toJson(const ExperimentSystem& system);
 Json toJson(const ExperimentPath& path);
-
-/// Throws InputError naming the key unless value >= least.
-template <typename T>
-void requireAtLeast(const JsonReader& reader, const char* key, T value, T least) {
-  if (!(value >= least))
-    throwInput(reader.place(key), fmt::format("at least {}", least), "{}", value);
-}
-
-/// What `parse` makes of every item of a list; nothing where there is no such key.
-template <typename T>
-std::vector<T> listFrom(JsonReader& reader, const std::string& key,
-                        T (*parse)(const Json&, const std::string&, const std::string&),
-                        const std::string& prefix = {}) {
-  std::vector<T> out;
-  if (!reader.has(key)) return out;
-  const Json& list = reader.raw(key);
-  if (!list.is_array()) throw InputError(reader.place(key), "a list", list.type_name());
-  for (size_t i = 0; i < list.size(); ++i)
-    out.push_back(parse(list[i], reader.origin(), fmt::format("{}{}[{}].", prefix, key, i)));
-  return out;
-}
 
 }  // namespace marey

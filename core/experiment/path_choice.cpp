@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "io/annotation_files.h"
 #include "io/clip_io.h"
 #include "model/training_pace.h"
 #include "motion/path.h"
+#include "motion/representation/representation.h"
 #include "motion/resample.h"
 
 namespace marey {
@@ -76,6 +78,58 @@ void addSpeedDoubt(const MotionModel& model, const PathChoice& choice,
                             fastest, pace->speedMS.highest)});
 }
 
+/// The labels of way-points, which a type for all of it replaces.
+void addLabels(const PathChoice& choice, ControlRequest& control) {
+  if (!choice.control.type.empty())
+    control.annotations.labels = {{.label = choice.control.type}};
+  else if (!isClip(choice) && !isPreset(choice))
+    control.annotations.labels = pathLabels(wayPointsOf(choice), choice.path);
+}
+
+void addSignals(const ModelInfo& info, const PathChoice& choice, ControlRequest& control) {
+  for (const auto& [name, file] : choice.control.signals) {
+    const ControlChannel* channel = channelNamed(info.features.control, name);
+    if (!channel || channel->kind != ControlKind::Array)
+      throw InputError({.path = info.variant},
+                       "a signal of the model (" + summaryOf(info.features.control) + ")",
+                       "'" + name + "'");
+    control.annotations.signals[name] = io::readSignal(choice.folder / file, channel->fps);
+  }
+}
+
+void addBody(const ModelInfo& info, const PathChoice& choice, ControlRequest& control) {
+  if (choice.control.body.empty()) return;
+  const std::filesystem::path file = choice.folder / choice.control.body;
+  if (!channelOf(info.features.control, ControlKind::Skeleton))
+    throw InputError({.path = info.variant}, "a model whose control is a body (for another one)",
+                     summaryOf(info.features.control));
+  const Clip clip = io::readClip(file);
+  requireSameJoints(info, clip, file.string());
+  control.body = representationOf(info.features, file.string()).skeletonOf({clip}, info.features);
+}
+
+/// What is asked beside the way. A type that the model does not know is refused, labels of
+/// way-points that it has no use for are told.
+void addControl(const ModelInfo& info, const PathChoice& choice, SampleRequest& request,
+                io::InputReport& report) {
+  addLabels(choice, request.control);
+  addSignals(info, choice, request.control);
+  addBody(info, choice, request.control);
+  for (const std::string& name : choice.control.leftOut) {
+    if (!channelNamed(info.features.control, name))
+      throw InputError({.path = info.variant},
+                       "a control to leave out (" + summaryOf(info.features.control) + ")",
+                       "'" + name + "'");
+    request.control.leftOut.insert(name);
+  }
+  if (channelOf(info.features.control, ControlKind::Label)) return;
+  if (!choice.control.type.empty())
+    throw InputError({.path = info.variant}, "a model that knows types of motion",
+                     "control by " + summaryOf(info.features.control));
+  if (!isClip(choice) && !request.control.annotations.labels.empty())
+    report.add({choice.path, "", "no_effect", "its types have no effect: the model knows none"});
+}
+
 }  // namespace
 
 std::vector<RootFrame> rootFramesOf(const PathChoice& choice, double fps) {
@@ -101,7 +155,9 @@ SampleRequest requestFor(const MotionModel& model, const PathChoice& choice,
   const double fps = model.info().features.fps;
   SampleRequest out;
   if (isClip(choice)) {
-    out = requestAlongClip(model, onlyClip(clipFile(choice), report), choice.startFromClip);
+    Clip clip = onlyClip(clipFile(choice), report);
+    io::readSignals(clip, model.info().features.control);
+    out = requestAlongClip(model, clip, choice.startFromClip);
   } else {
     if (choice.startFromClip) throw UsageError("--start clip: needs a path of the form clip:FILE");
     const bool quadruped = model.info().skeleton && rolesOf(*model.info().skeleton).quadruped;
@@ -111,6 +167,7 @@ SampleRequest requestFor(const MotionModel& model, const PathChoice& choice,
         report.add({choice.path, "", "no_effect", remark});
   }
   shorten(out.path, choice, fps);
+  addControl(model.info(), choice, out, report);
   addSpeedDoubt(model, choice, out.path, report);
   return out;
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "experiment/control_choice.h"
 #include "io/input_report.h"
 #include "model/sampler.h"
 #include "motion/path.h"
@@ -13,8 +14,9 @@ namespace marey {
 struct PathChoice {
   std::string path;  ///< as given; where there are way-points, only a name for errors
   std::vector<WayPoint> wayPoints = {};
-  double seconds = 0.0;          ///< 0: a preset's 10 s, else the whole clip or path
-  bool startFromClip = false;    ///< clip:FILE only: its first frames are the start pose
+  double seconds = 0.0;        ///< 0: a preset's 10 s, else the whole clip or path
+  bool startFromClip = false;  ///< clip:FILE only: its first frames are the start pose
+  ControlChoice control = {};
   std::filesystem::path folder;  ///< relative file names start there
 };
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "experiment/packed_motion.h"
+#include "io/annotation_files.h"
 #include "model/sampler.h"
 #include "stats/footsteps.h"
 
@@ -46,11 +47,6 @@ std::vector<std::string> byNumber(const std::vector<size_t>& dealt,
   return out;
 }
 
-FeatureSequence sequenceOf(const SampleRequest& request, int sample, Matrix poses) {
-  return {fmt::format("sample_{:03}", request.firstSample + sample), std::move(poses),
-          controlFromTrajectory(request.path), request.path.front()};
-}
-
 }  // namespace
 
 // Clips of similar length go together.
@@ -58,7 +54,9 @@ void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vec
                    SystemResult& out, Progress& progress, Ranks& ranks) {
   std::vector<SampleRequest> requests;
   for (size_t i = 0; i < natural.size(); ++i) {
-    requests.push_back(requestAlongClip(model, natural[i], false));
+    Clip clip = natural[i];
+    io::readSignals(clip, model.info().features.control);
+    requests.push_back(requestAlongClip(model, clip, false));
     requests.back().samples = e.heldOutSamples;
     requests.back().seed = e.seed;
     requests.back().temperature = out.temperature;
@@ -87,7 +85,8 @@ void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vec
   for (size_t i = 0; i < results.size(); ++i) {
     int sample = 0;
     for (ScoredSequence& scored : unpackSamples(results[i])) {
-      const auto sequence = sequenceOf(requests[i], sample++, std::move(scored.poses));
+      const auto sequence =
+          sequenceOf(model.info(), requests[i], sample++, std::move(scored.poses));
       out.heldOutScores.push_back(std::move(scored.score));
       out.heldOut.push_back(sampledClip(model, sequence));
       out.heldOut.back().name = natural[i].name + "/" + sequence.name;
@@ -136,8 +135,9 @@ void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& ou
     samples.wanted = request.path;
     for (ScoredSequence& scored : unpackSamples(results[i])) {
       samples.scores.push_back(std::move(scored.score));
-      samples.clips.push_back(std::make_shared<const Clip>(sampledClip(
-          model, sequenceOf(request, static_cast<int>(i % ofPath), std::move(scored.poses)))));
+      samples.clips.push_back(std::make_shared<const Clip>(
+          sampledClip(model, sequenceOf(model.info(), request, static_cast<int>(i % ofPath),
+                                        std::move(scored.poses)))));
     }
   }
 }
@@ -229,10 +229,16 @@ ExperimentResult runExperiment(const Experiment& experiment, std::span<const Mod
     const double from = 0.05 + share * static_cast<double>(i);
     Progress scoring = progress.part(from, from), heldOut = progress.part(from, from + 0.5 * share),
              paths = progress.part(from + 0.5 * share, from + share);
+    io::readSignals(out.natural, model->info().features.control);
     scoreNatural(*model, out.natural, result, scoring, ranks);
     if (experiment.heldOutSamples > 0)
       sampleHeldOut(*model, experiment, out.natural, result, heldOut, ranks);
     samplePaths(*model, experiment, result, paths, ranks);
+    for (const ExperimentCase& one : experiment.cases) {
+      Progress working = progress.part(from + share, from + share);
+      result.cases[one.name] =
+          runCase(*model, one, out.natural, experiment.seed, result.temperature, working, ranks);
+    }
     out.systems.push_back(std::move(result));
   }
   if (out.systems.empty() && !experiment.systems.empty())

@@ -11,6 +11,7 @@
 #include "base/ranks.h"
 #include "experiment/left_out.h"
 #include "experiment/sample_set.h"
+#include "experiment/task_cases.h"
 #include "io/input_report.h"
 #include "model/likelihood.h"
 #include "model/model_family.h"
@@ -33,6 +34,7 @@ struct SystemResult {
   std::vector<std::vector<RootFrame>> heldOutPaths;
   std::vector<ClipScore> naturalScores, heldOutScores;  ///< of every clip, also too short ones
   std::map<std::string, PathSamples> paths;             ///< by the path's name
+  std::map<std::string, CaseResult> cases;              ///< by the case's name
   double framesPerSecond = 0.0;                         ///< of sampling
   /// Over the frames that every system scores; each in its own unit.
   LikelihoodSummary naturalLikelihood, heldOutLikelihood;

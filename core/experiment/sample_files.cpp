@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/packing.h"
 #include "experiment/motion_writers.h"
 #include "io/clip_io.h"
 
@@ -21,12 +22,26 @@ std::string_view bytesOf(const void* data, size_t size) {
   return {static_cast<const char*>(data), size};
 }
 
+/// All of what is asked beside the path, in bytes.
+std::string bytesOf(const ControlRequest& r) {
+  Packer packer;
+  for (const LabelSpan& span : r.annotations.labels)
+    packer.add(span.label).add(span.fromS).add(span.toS);
+  for (const auto& [name, signal] : r.annotations.signals)
+    packer.add(name).add(signal.fps).add(signal.startS).add(signal.values);
+  for (const std::string& name : r.leftOut) packer.add(name);
+  if (r.body) packer.add(jsonText(toJson(*r.body)));
+  return packer.take();
+}
+
 /// Of all that steers the motions besides seed, temperature and model.
 std::string steeringHash(const SampleRequest& r) {
+  const std::string control = bytesOf(r.control);
   const std::vector<std::string_view> parts = {
       bytesOf(r.path.data(), r.path.size() * sizeof(RootFrame)),
       bytesOf(r.startPoses.data(), static_cast<size_t>(r.startPoses.size()) * sizeof(float)),
-      bytesOf(r.startControl.data(), static_cast<size_t>(r.startControl.size()) * sizeof(float))};
+      bytesOf(r.startControl.data(), static_cast<size_t>(r.startControl.size()) * sizeof(float)),
+      control};
   return contentHash(parts);
 }
 

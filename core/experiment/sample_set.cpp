@@ -81,6 +81,7 @@ SampleRequest requestOf(const MotionModel& model, const SampleRecipe& recipe) {
                          .wayPoints = recipe.path.wayPoints,
                          .seconds = recipe.path.seconds,
                          .startFromClip = recipe.path.startFromClip,
+                         .control = recipe.path.control,
                          .folder = recipe.folder});
   request.samples = recipe.samples;
   request.seed = recipe.seed;

@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "task/live_rollout.h"
+
 #include "experiment/document.h"
-#include "experiment/live_rollout.h"
 #include "experiment/path_choice.h"
 #include "model/scorer.h"
 

@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "task/steering.h"
+
 #include "experiment/parts.h"
-#include "experiment/steering.h"
 
 namespace marey {
 

@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_kind.h"
+#include "io/annotation_files.h"
 #include "io/asf_amc.h"
 #include "io/bvh.h"
 #include "io/csv_writer.h"
@@ -155,7 +156,11 @@ std::vector<Clip> readClips(const std::filesystem::path& path, const ReadOptions
   if (format == nullptr)
     throw InputError({.path = path.string()}, "a motion file (" + formatNames(false) + ")",
                      foundInstead(bytes, path));
-  return format->read(bytes, path, options);
+  std::vector<Clip> out = format->read(bytes, path, options);
+  // A file of several clips has no file beside it that would be one clip's.
+  if (const auto labels = labelsBeside(path); !labels.empty() && out.size() == 1)
+    out.front().annotations.labels = readLabels(labels);
+  return out;
 }
 
 Clip readClip(const std::filesystem::path& path, const ReadOptions& options) {

@@ -5,8 +5,9 @@
 
 namespace marey::io {
 
-/// Every clip of a file, in metres and Y up; the format is found by content, not by name.
-/// Throws FileError or InputError (with line or frame).
+/// Every clip of a file, in metres and Y up; the format is found by content, not by name. The
+/// labels that lie beside the file of one clip are read with it (annotation_files.h). Throws
+/// FileError or InputError (with line or frame).
 std::vector<Clip> readClips(const std::filesystem::path& path, const ReadOptions& options = {});
 /// The only clip of a file. Throws InputError when the file holds several.
 Clip readClip(const std::filesystem::path& path, const ReadOptions& options = {});

@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_kind.h"
+#include "io/annotation_files.h"
 #include "io/clip_io.h"
 #include "io/input_hints.h"
 #include "io/plain_text.h"
@@ -139,7 +140,7 @@ class Finder {
     std::error_code ec;
     if (!fs::exists(path, ec)) return addNotRead(path, "a link to nothing");
     if (fs::is_directory(path, ec)) return addSubfolder(path);
-    if (!fs::is_regular_file(path, ec) || isCompanion(path)) return;
+    if (!fs::is_regular_file(path, ec) || isCompanion(path) || isAnnotation(path)) return;
     if (!hasReadableExtension(path)) return count(path);
     std::string head;
     try {

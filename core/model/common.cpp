@@ -5,6 +5,8 @@
 #include "model/linear_gaussian.h"
 #include "model/model_family.h"
 #include "model/pose_units.h"
+#include "motion/control/encode_control.h"
+#include "motion/representation/representation.h"
 
 namespace marey {
 namespace {
@@ -39,7 +41,13 @@ void requireSameJoints(const ModelInfo& info, const Clip& clip, const std::strin
 }
 
 FeatureSequence featuresOf(const ModelInfo& info, const Clip& clip) {
-  return extractFeatures(clip, info.features, info.skeleton);
+  const bool own = channelOf(info.features.control, ControlKind::Skeleton) != nullptr;
+  auto body = own ? representationOf(info.features, clip.name).skeletonOf({clip}, info.features)
+                  : info.skeleton;
+  FeatureSequence out = extractFeatures(clip, info.features, body);
+  if (own) out.body = std::move(body);
+  fillAbsent(info.features.control, info.features.fps, info.standardiser.controlMean, out.control);
+  return out;
 }
 
 double Standardiser::logDetPerFrame() const {
@@ -109,10 +117,12 @@ const DensityEstimator& requireDensity(const MotionModel& model) {
 }
 
 Json toJson(const FeatureSpec& spec) {
-  return {{"layout", spec.layout},
-          {"fps", spec.fps},
-          {"root_sigma_s", spec.rootSigmaS},
-          {"facing_sigma_s", spec.facingSigmaS}};
+  Json out = {{"layout", spec.layout},
+              {"fps", spec.fps},
+              {"root_sigma_s", spec.rootSigmaS},
+              {"facing_sigma_s", spec.facingSigmaS}};
+  if (!isRootMotionAlone(spec.control)) out["control"] = toJson(spec.control);
+  return out;
 }
 
 FeatureSpec featureSpecFromJson(const Json& value, const std::string& origin) {
@@ -123,6 +133,7 @@ FeatureSpec featureSpecFromJson(const Json& value, const std::string& origin) {
   out.fps = reader.required<double>("fps");
   out.rootSigmaS = reader.required<double>("root_sigma_s");
   out.facingSigmaS = reader.required<double>("facing_sigma_s");
+  if (reader.has("control")) out.control = controlLayoutFromJson(reader.raw("control"), origin);
   reader.finish();
   if (!(out.fps > 0.0)) throwInput(reader.place("fps"), "a positive rate", "{}", out.fps);
   return out;

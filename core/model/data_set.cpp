@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "model/control_data.h"
 #include "motion/representation/representation.h"
 
 namespace marey {
@@ -34,45 +35,15 @@ std::vector<float> meanBoneLengths(const std::vector<Clip>& clips) {
   return out;
 }
 
-struct Moments {
-  std::vector<float> mean, std;
-};
-
-/// Population mean and standard deviation of columns. A constant column gets deviation 1, so
-/// that standardising leaves it finite.
-template <typename Member>
-Moments momentsOf(const std::vector<FeatureSequence>& sequences, Member member) {
-  const long width = (sequences.front().*member).cols();
-  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(width), squares = sum;
-  double n = 0.0;
-  for (const auto& s : sequences) {
-    sum += (s.*member).template cast<double>().colwise().sum();
-    n += static_cast<double>((s.*member).rows());
-  }
-  const Eigen::RowVectorXd mean = sum / n;
-  for (const auto& s : sequences)
-    squares += ((s.*member).template cast<double>().rowwise() - mean)
-                   .array()
-                   .square()
-                   .matrix()
-                   .colwise()
-                   .sum();
-  Moments out;
-  for (long i = 0; i < width; ++i) {
-    const double deviation = std::sqrt(squares(i) / n);
-    out.mean.push_back(static_cast<float>(mean(i)));
-    out.std.push_back(deviation > 1e-6 ? static_cast<float>(deviation) : 1.f);
-  }
-  return out;
-}
-
 std::vector<FeatureSequence> extractAll(const std::vector<Clip>& clips, const FeatureSpec& spec,
                                         const std::shared_ptr<const Skeleton>& skeleton,
-                                        Progress& progress) {
+                                        const Bodies& bodies, Progress& progress) {
   std::vector<FeatureSequence> out;
   for (const Clip& clip : clips) {
     progress.throwIfCancelled();
-    out.push_back(extractFeatures(clip, spec, skeleton));
+    const auto body = bodies.of(clip);
+    out.push_back(extractFeatures(clip, spec, body ? body : skeleton));
+    out.back().body = body;
     progress.report(static_cast<double>(out.size()) / static_cast<double>(clips.size()), clip.name);
   }
   return out;
@@ -82,7 +53,8 @@ void augment(std::vector<FeatureSequence>& sequences, const PrepareOptions& opti
              const Skeleton& skeleton) {
   if (options.mirror)
     for (size_t i = 0, n = sequences.size(); i < n; ++i) {
-      sequences.push_back(mirrored(sequences[i], options.features, skeleton));
+      const Skeleton& body = sequences[i].body ? *sequences[i].body : skeleton;
+      sequences.push_back(mirrored(sequences[i], options.features, body));
       sequences.back().name += "|mirror";
     }
   if (options.reverse)
@@ -120,15 +92,20 @@ DataSet prepareDataSet(const std::vector<Clip>& train, const std::vector<Clip>& 
   checkSameSkeleton(test, *train.front().skeleton, train.front().name);
   const Representation& poses = representationOf(options.features, "data set");
   DataSet out{.options = options, .skeleton = poses.skeletonOf(train, options.features)};
-  out.options.features.layout = poses.name;
+  FeatureSpec& features = out.options.features;
+  features.layout = poses.name;
+  features.control = completedLayout(features.control, train);
   out.boneLengthsM = meanBoneLengths(train);
+  const Bodies bodies(train, test, features);
   Progress trainProgress = progress.part(0.0, 0.7), testProgress = progress.part(0.7, 0.8);
-  out.train = extractAll(train, options.features, out.skeleton, trainProgress);
-  out.test = extractAll(test, options.features, out.skeleton, testProgress);
-  augment(out.train, options, *out.skeleton);
-  const Moments pose = momentsOf(out.train, &FeatureSequence::pose);
-  const Moments control = momentsOf(out.train, &FeatureSequence::control);
+  out.train = extractAll(train, features, out.skeleton, bodies, trainProgress);
+  out.test = extractAll(test, features, out.skeleton, bodies, testProgress);
+  augment(out.train, out.options, *out.skeleton);
+  const Moments pose = poseMoments(out.train), control = controlMoments(out.train, features);
   out.standardiser = {pose.mean, pose.std, control.mean, control.std};
+  for (auto* sequences : {&out.train, &out.test})
+    for (FeatureSequence& s : *sequences)
+      fillAbsent(features.control, features.fps, control.mean, s.control);
   out.provenance = {{"train", sourcesOf(train, out.train)}, {"test", sourcesOf(test, out.test)}};
   progress.report(1.0, "prepared");
   return out;
@@ -161,14 +138,42 @@ void requireFinite(const std::vector<FeatureSequence>& sequences, const std::str
 
 namespace {
 
+/// Bodies of their own as numbers in a list, in the order in which they come.
+class StoredBodies {
+ public:
+  int64_t numberOf(const FeatureSequence& s) {
+    if (!s.body) return -1;
+    for (size_t i = 0; i < m_bodies.size(); ++i)
+      if (m_bodies[i] == s.body || *m_bodies[i] == *s.body) return static_cast<int64_t>(i);
+    m_bodies.push_back(s.body);
+    return static_cast<int64_t>(m_bodies.size()) - 1;
+  }
+  Json toJson() const {
+    Json out = Json::array();
+    for (const auto& body : m_bodies) out.push_back(marey::toJson(*body));
+    return out;
+  }
+  static std::vector<std::shared_ptr<const Skeleton>> read(const TensorFile& file,
+                                                           const std::string& origin) {
+    std::vector<std::shared_ptr<const Skeleton>> out;
+    if (!file.metadata.contains("bodies")) return out;
+    for (const Json& body : file.metadata["bodies"]) out.push_back(skeletonFromJson(body, origin));
+    return out;
+  }
+  bool none() const { return m_bodies.empty(); }
+
+ private:
+  std::vector<std::shared_ptr<const Skeleton>> m_bodies;
+};
+
 void storeSequences(const std::string& prefix, const std::vector<FeatureSequence>& sequences,
-                    TensorFile& file) {
+                    StoredBodies& bodies, TensorFile& file) {
   long rows = 0;
   for (const auto& s : sequences) rows += s.pose.rows();
   const long poseDim = sequences.empty() ? 0 : sequences.front().pose.cols();
   const long controlDim = sequences.empty() ? 0 : sequences.front().control.cols();
   Matrix pose(rows, poseDim), control(rows, controlDim);
-  std::vector<int64_t> lengths;
+  std::vector<int64_t> lengths, numbers;
   std::vector<double> starts;
   Json names = Json::array();
   long at = 0;
@@ -179,6 +184,7 @@ void storeSequences(const std::string& prefix, const std::vector<FeatureSequence
     lengths.push_back(s.pose.rows());
     starts.insert(starts.end(), {s.start.x, s.start.z, s.start.heading});
     names.push_back(s.name);
+    numbers.push_back(bodies.numberOf(s));
   }
   const auto count = static_cast<int64_t>(sequences.size());
   file.tensors[prefix + "/pose"] = Tensor::fromFloats({rows, poseDim}, pose.data());
@@ -186,6 +192,7 @@ void storeSequences(const std::string& prefix, const std::vector<FeatureSequence
   file.tensors[prefix + "/lengths"] = Tensor::fromInt64({count}, lengths.data());
   file.tensors[prefix + "/start"] = Tensor::fromDoubles({count, 3}, starts.data());
   file.metadata[prefix + "_names"] = names;
+  if (!bodies.none()) file.tensors[prefix + "/body"] = Tensor::fromInt64({count}, numbers.data());
 }
 
 Matrix matrixOf(const Tensor& tensor) {
@@ -202,6 +209,10 @@ std::vector<FeatureSequence> loadSequences(const std::string& prefix, const Tens
   const auto starts = file.get(prefix + "/start", {count, 3}, origin).toDoubles();
   JsonReader reader(file.metadata, origin);
   const auto names = reader.required<std::vector<std::string>>(prefix + "_names");
+  const auto bodies = StoredBodies::read(file, origin);
+  std::vector<int64_t> numbers(lengths.size(), -1);
+  if (file.tensors.contains(prefix + "/body"))
+    numbers = file.get(prefix + "/body", {count}, origin).toInt64();
   std::vector<FeatureSequence> out;
   int64_t at = 0;
   for (size_t i = 0; i < lengths.size(); ++i) {
@@ -212,6 +223,10 @@ std::vector<FeatureSequence> loadSequences(const std::string& prefix, const Tens
                    pose.middleRows(at, lengths[i]),
                    control.middleRows(at, lengths[i]),
                    {starts[3 * i], starts[3 * i + 1], starts[3 * i + 2]}});
+    if (numbers[i] >= static_cast<int64_t>(bodies.size()))
+      throwInput({.path = origin, .item = prefix + " sequence " + std::to_string(i)},
+                 fmt::format("one of {} bodies", bodies.size()), "number {}", numbers[i]);
+    if (numbers[i] >= 0) out.back().body = bodies[static_cast<size_t>(numbers[i])];
     at += lengths[i];
   }
   requireFinite(out, origin);
@@ -231,14 +246,17 @@ void writeDataSet(const std::filesystem::path& path, const DataSet& data) {
   TensorFile file;
   storeCommon(common, file);
   file.metadata["kind"] = "dataset";
+  file.metadata["version"] = kDataSetVersion;
   file.metadata["config"] = {{"window_s", data.options.windowS},
                              {"hop_s", data.options.hopS},
                              {"mirror", data.options.mirror},
                              {"reverse", data.options.reverse}};
   file.tensors["bone_lengths_m"] = Tensor::fromFloats(
       {static_cast<int64_t>(data.boneLengthsM.size())}, data.boneLengthsM.data());
-  storeSequences("train", data.train, file);
-  storeSequences("test", data.test, file);
+  StoredBodies bodies;
+  storeSequences("train", data.train, bodies, file);
+  storeSequences("test", data.test, bodies, file);
+  if (!bodies.none()) file.metadata["bodies"] = bodies.toJson();
   writeTensorFile(path, file);
 }
 
@@ -247,6 +265,11 @@ DataSet readDataSet(const std::filesystem::path& path) {
   const TensorFile file = readTensorFile(path);
   if (file.metadata.value("kind", "") != "dataset")
     throw InputError({.path = origin}, "a data set made by `marey prepare`", "another file");
+  if (const int version = file.metadata.value("version", 1); version > kDataSetVersion)
+    throwInput(
+        {.path = origin, .item = "key 'version'"},
+        fmt::format("at most {} (a data set of this Marey or an older one)", kDataSetVersion), "{}",
+        version);
   const ModelInfo common = loadCommon(file, origin);
   JsonReader config(common.config, origin, "config.");
   DataSet out;

@@ -28,20 +28,24 @@ struct Window {
 
 struct DataSet {
   PrepareOptions options;
-  std::shared_ptr<const Skeleton> skeleton;
-  std::vector<float> boneLengthsM;     ///< natural mean per bone, training clips
-  std::vector<FeatureSequence> train;  ///< augmented
-  std::vector<FeatureSequence> test;   ///< as recorded
-  Standardiser standardiser;           ///< of the augmented training data
-  Json provenance;                     ///< sources, options, counts
+  std::shared_ptr<const Skeleton> skeleton;  ///< where sequences have no body of their own
+  std::vector<float> boneLengthsM;           ///< natural mean per bone, training clips
+  std::vector<FeatureSequence> train;        ///< augmented
+  std::vector<FeatureSequence> test;         ///< as recorded
+  Standardiser standardiser;                 ///< of the augmented training data
+  Json provenance;                           ///< sources, options, counts
   std::string hash;
 
   int poseDim() const { return static_cast<int>(standardiser.poseMean.size()); }
   int controlDim() const { return static_cast<int>(standardiser.controlMean.size()); }
 };
 
-/// Augments (mirror, time reversal) and fits the standardiser. Throws InputError when there is
-/// no training clip, or clips differ in skeleton.
+/// Augments (mirror, time reversal) and fits the standardiser. A label channel without labels takes
+/// those of the training clips, an array without columns those of the first training clip's signal,
+/// a skeleton channel the clips' joints; where there is one, every clip keeps its body. Labels and
+/// presences are not standardised; what is left out is the mean of what is not. Throws InputError
+/// when there is no training clip, clips differ in joints, or control is missing that may not be
+/// left out.
 DataSet prepareDataSet(const std::vector<Clip>& train, const std::vector<Clip>& test,
                        const PrepareOptions& options, Progress& progress);
 
@@ -52,6 +56,9 @@ std::vector<Window> cutWindows(const std::vector<FeatureSequence>& sequences, in
 
 /// Throws InputError naming sequence and frame where a value is NaN or infinite.
 void requireFinite(const std::vector<FeatureSequence>& sequences, const std::string& origin);
+
+/// Of stored data sets; files without one are of version 1.
+inline constexpr int kDataSetVersion = 1;
 
 void writeDataSet(const std::filesystem::path& path, const DataSet& data);
 /// Throws FileError or InputError.

@@ -33,6 +33,13 @@ void regressors(const FeatureSequence& s, int order, long t, Eigen::Ref<VectorXd
   out.segment(order * d + c, c) = s.control.row(t - 1).cast<double>();
 }
 
+/// [regressors, pose] of frame t.
+void jointRow(const FeatureSequence& s, int order, long t, Eigen::Ref<VectorXd> out) {
+  const long d = s.pose.cols();
+  regressors(s, order, t, out.head(out.size() - d));
+  out.tail(d) = s.pose.row(t).cast<double>();
+}
+
 /// Means and second moments of [regressors, pose].
 struct Moments {
   VectorXd mean;
@@ -48,23 +55,25 @@ Moments momentsOf(const std::vector<FeatureSequence>& sequences, int order) {
                "none");
   const auto all = static_cast<long>(rows.size()), count = std::min(all, kMostRows);
   const long x = widthOf(*rows.front().first, order), width = x + rows.front().first->pose.cols();
-  VectorXd sum = VectorXd::Zero(width);
+  // Seen from the first row, so that what never changes has a variance of exactly zero.
+  VectorXd origin(width), sum = VectorXd::Zero(width);
+  jointRow(*rows.front().first, order, rows.front().second, origin);
   MatrixXd square = MatrixXd::Zero(width, width);
   MatrixXd block(width, kTogether);
   for (long first = 0; first < count; first += kTogether) {
     const long n = std::min(kTogether, count - first);
     for (long i = 0; i < n; ++i) {
       const auto [s, t] = rows[static_cast<size_t>((first + i) * all / count)];
-      regressors(*s, order, t, block.col(i).head(x));
-      block.col(i).tail(width - x) = s->pose.row(t).cast<double>();
+      jointRow(*s, order, t, block.col(i));
     }
+    block.leftCols(n).colwise() -= origin;
     sum += block.leftCols(n).rowwise().sum();
     square.selfadjointView<Eigen::Lower>().rankUpdate(block.leftCols(n));
   }
   const VectorXd mean = sum / static_cast<double>(count);
   MatrixXd covariance = square.selfadjointView<Eigen::Lower>();
   covariance = covariance / static_cast<double>(count) - mean * mean.transpose();
-  return {mean, covariance};
+  return {mean + origin, covariance};
 }
 
 /// Floors [D] in units of floorM.

@@ -73,6 +73,8 @@ struct ModelInfo {
 
   /// Equal control always gives the same motion.
   bool deterministic() const { return latent.width == 0; }
+  /// What its control is made of is known (it is not of all imported models).
+  bool knowsControl() const { return features.controlWidth() == controlDim; }
   /// Values of the control that a frame sees: frames t - context .. t + lookahead.
   long controlWindowWidth() const {
     return static_cast<long>(context + 1 + lookahead) * controlDim;
@@ -154,13 +156,18 @@ struct CompletionRequest {
   Matrix known;     ///< [T, D]: 1 where a value is known, else 0
   Matrix controls;  ///< [context + T + lookahead, C]
   Matrix latents;   ///< as ClipRequest::latents
+  /// [D]: standard deviation of the noise on known values, in their units; empty: they are exact.
+  std::vector<double> noise = {};
 };
 
 /// Fills in what is unknown.
 class MotionCompleter {
  public:
   virtual ~MotionCompleter() = default;
-  /// Poses [T, D]: the known values as they were, the others as the model has them.
+  /// Whether it takes CompletionRequest::noise.
+  virtual bool denoises() const { return false; }
+  /// Poses [T, D]: the known values as they were, unless there is noise on them, the others as the
+  /// model has them.
   virtual Matrix complete(const CompletionRequest& request,
                           const std::function<void()>& between) const = 0;
 };
@@ -198,7 +205,8 @@ const DensityEstimator& requireDensity(const MotionModel& model);
 /// model without a skeleton (an imported one) only says how many it has.
 void requireSameJoints(const ModelInfo& info, const Clip& clip, const std::string& path);
 
-/// A clip as the model sees it: its rate, its representation, its rest pose. Throws InputError.
+/// A clip as the model sees it: its rate, its representation, its control, and the model's rest
+/// pose, or the clip's own where the body is a control. Throws InputError.
 FeatureSequence featuresOf(const ModelInfo& info, const Clip& clip);
 
 /// Standardiser, features and skeleton inside stored models and data sets.

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "model/clip_length.h"
 #include "motion/resample.h"
 
 namespace marey {
@@ -33,9 +34,11 @@ Eigen::RowVectorXf windowAt(const Matrix& control, long first, long rows) {
 void check(const ModelInfo& info, const SampleRequest& r) {
   if (r.path.empty()) throw InputError({.path = "path"}, "at least one frame", "none");
   if (r.samples < 1) throwInput({.path = "samples"}, "at least one", "{}", r.samples);
-  if (info.controlDim != 3)
-    throwInput({.path = info.variant}, "a model that is controlled by a path (3 values per frame)",
-               "{} control values", info.controlDim);
+  if (!info.knowsControl())
+    throwInput({.path = info.variant},
+               fmt::format("a model of {} control values per frame ({})",
+                           info.features.controlWidth(), summaryOf(info.features.control)),
+               "{}", info.controlDim);
   if (info.deterministic() && r.temperature != 1.0)
     throwInput({.path = info.variant, .item = "temperature"},
                "1: this model draws nothing that could be cooled", "{}", r.temperature);
@@ -64,7 +67,7 @@ std::vector<Lane> lanesOf(const ModelInfo& info, std::span<const SampleRequest> 
               row,
               warm ? 0 : static_cast<int>(std::lround(request.warmUpS * info.features.fps)),
               {}};
-    lane.control = paddedControl(controlFromTrajectory(request.path), request.startControl,
+    lane.control = paddedControl(controlOf(info, request), request.startControl,
                                  info.context + lane.warmUp, info.lookahead);
     row += request.samples;
     out.push_back(std::move(lane));
@@ -172,6 +175,25 @@ void makeWhole(const ModelInfo& info, const ClipGenerator& generator,
 
 }  // namespace
 
+Matrix controlOf(const ModelInfo& info, const SampleRequest& request) {
+  ControlRequest control = request.control;
+  if (!control.body) control.body = info.skeleton;
+  const FeatureSpec& f = info.features;
+  Matrix out = encodeControl(f.control, request.path, control, f.fps, {.path = info.variant});
+  fillAbsent(f.control, f.fps, info.standardiser.controlMean, out);
+  return out;
+}
+
+FeatureSequence sequenceOf(const ModelInfo& info, const SampleRequest& request, int sample,
+                           Matrix poses) {
+  const bool bodies = channelOf(info.features.control, ControlKind::Skeleton) != nullptr;
+  return {.name = fmt::format("sample_{:03}", request.firstSample + sample),
+          .pose = std::move(poses),
+          .control = controlOf(info, request),
+          .start = request.path.front(),
+          .body = bodies ? request.control.body : nullptr};
+}
+
 void drawLatent(uint64_t seed, int sample, int frame, double temperature, double df,
                 std::span<float> out) {
   RandomKey key{
@@ -207,9 +229,9 @@ std::vector<std::vector<FeatureSequence>> sampleSequences(const MotionModel& mod
     check(model.info(), request);
     out.emplace_back();
     for (int b = 0; b < request.samples; ++b)
-      out.back().push_back({fmt::format("sample_{:03}", request.firstSample + b),
-                            Matrix(static_cast<long>(request.path.size()), model.info().poseDim),
-                            controlFromTrajectory(request.path), request.path.front()});
+      out.back().push_back(
+          sequenceOf(model.info(), request, b,
+                     Matrix(static_cast<long>(request.path.size()), model.info().poseDim)));
   }
   const auto keep = [&](size_t request, int frame, const Matrix& poses) {
     for (size_t b = 0; b < out[request].size(); ++b)
@@ -228,8 +250,8 @@ Clip sampledClip(const MotionModel& model, const FeatureSequence& sequence) {
   const ModelInfo& info = model.info();
   if (!info.skeleton)
     throw InputError({.path = info.variant}, "a model with a skeleton", "one imported without it");
-  Clip clip =
-      rebuildMotion(sequence.pose, sequence.control, sequence.start, info.skeleton, info.features);
+  Clip clip = rebuildMotion(sequence.pose, sequence.control, sequence.start,
+                            sequence.body ? sequence.body : info.skeleton, info.features);
   clip.name = sequence.name;
   clip.source.format = "model";
   clip.source.fps = info.features.fps;
@@ -247,12 +269,9 @@ std::vector<Clip> sampleClips(const MotionModel& model, const SampleRequest& req
 SampleRequest requestAlongClip(const MotionModel& model, const Clip& clip, bool startFromClip) {
   const ModelInfo& info = model.info();
   const Place place{.path = clip.source.path.empty() ? clip.name : clip.source.path};
-  const auto requireLength = [&](int frames, int skipped) {
-    if (frames < skipped + 2)
-      throwInput(
-          place,
-          fmt::format("more than {} frames at {} per second", skipped + 1, info.features.fps), "{}",
-          frames);
+  // The control of a frame needs two root frames.
+  const auto requireLength = [&](int frames, int given) {
+    requireFrames(info, frames, fewestFrames(given + 1), place);
   };
   SampleRequest out;
   if (!startFromClip) {  // the path alone, which any skeleton shows
@@ -260,6 +279,7 @@ SampleRequest requestAlongClip(const MotionModel& model, const Clip& clip, bool 
     const auto path = rootPath(resampled(clip, info.features.fps), info.features);
     requireLength(static_cast<int>(path.size()), 0);
     out.path = trajectoryFromControl(controlFromTrajectory(path), path.front());
+    out.control = requestOf(clip, info.features, nullptr);
     return out;
   }
   requireSameJoints(info, clip, place.path);
@@ -269,6 +289,9 @@ SampleRequest requestAlongClip(const MotionModel& model, const Clip& clip, bool 
   out.path.assign(trajectory.begin() + info.context, trajectory.end());
   out.startPoses = features.pose.topRows(info.context);
   out.startControl = features.control.topRows(info.context);
+  out.control = requestOf(clip, info.features, features.body);
+  out.control.annotations =
+      startingAt(std::move(out.control.annotations), info.context / info.features.fps);
   return out;
 }
 

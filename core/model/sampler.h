@@ -7,12 +7,14 @@
 
 #include "base/job.h"
 #include "model/motion_model.h"
+#include "motion/control/encode_control.h"
 
 namespace marey {
 
 struct SampleRequest {
   /// Root frames at the model's rate, one per frame to keep.
   std::vector<RootFrame> path;
+  ControlRequest control = {};  ///< beside the path; without a body it is the model's
   int samples = 1;
   uint64_t seed = 1;
   double temperature = 1.0;
@@ -23,6 +25,13 @@ struct SampleRequest {
   Matrix startPoses;
   Matrix startControl;  ///< [context, C], with startPoses
 };
+
+/// The rows [T, C] of a request's path, as the model sees them. Throws InputError where control is
+/// missing that the model cannot do without.
+Matrix controlOf(const ModelInfo& info, const SampleRequest& request);
+/// One of a request's motions as a model sees it.
+FeatureSequence sequenceOf(const ModelInfo& info, const SampleRequest& request, int sample,
+                           Matrix poses);
 
 /// Called with each frame's poses [samples, D] of one request.
 using FrameSink = std::function<void(size_t request, int frame, const Matrix& poses)>;
@@ -54,9 +63,10 @@ Clip sampledClip(const MotionModel& model, const FeatureSequence& sequence);
 std::vector<Clip> sampleClips(const MotionModel& model, const SampleRequest& request,
                               Progress& progress);
 
-/// The request for following a clip's own path, whatever its joints; `startFromClip` takes its
-/// first frames as history (the path then begins after them). Throws InputError when the clip is
-/// shorter than that needs or, for a start from it, has other joints than the model.
+/// The request for following a clip's own path and other control, whatever its joints;
+/// `startFromClip` takes its first frames as history (the path then begins after them). Throws
+/// InputError when the clip is shorter than that needs or, for a start from it, has other joints
+/// than the model.
 SampleRequest requestAlongClip(const MotionModel& model, const Clip& clip, bool startFromClip);
 
 }  // namespace marey

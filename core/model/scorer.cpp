@@ -27,10 +27,6 @@ Matrix withLookahead(const Matrix& control, int lookahead) {
 
 }  // namespace
 
-int fewestFrames(const ModelInfo& info) {
-  return info.context + 1;
-}
-
 double ClipScore::meanNatsPerFrame() const {
   if (loglikNats.empty()) return std::numeric_limits<double>::quiet_NaN();
   return std::accumulate(loglikNats.begin(), loglikNats.end(), 0.0) /
@@ -48,15 +44,6 @@ struct Lane {
   const FeatureSequence* features;
   Matrix control;  ///< with look-ahead
 };
-
-/// Refuses a sequence that is scored alone and cannot be.
-void requireLongEnough(const ModelInfo& info, const FeatureSequence& features) {
-  if (features.frameCount() < fewestFrames(info))
-    throwInput({.path = features.name},
-               fmt::format("more than {} frames at {} per second (the model's context)",
-                           info.context, info.features.fps),
-               "{}", features.frameCount());
-}
 
 /// One of the draws of a model's observation noise, or none.
 struct Draw {
@@ -198,7 +185,8 @@ std::vector<ClipScore> scoreSequences(const MotionModel& model,
 ClipScore scoreSequence(const MotionModel& model, const FeatureSequence& features,
                         bool standardised) {
   Progress progress;
-  requireLongEnough(model.info(), features);
+  requireFrames(model.info(), features.frameCount(), fewestFrames(model.info()),
+                {.path = features.name});
   return std::move(scoreSequences(model, {&features, 1}, standardised, progress).front());
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "model/clip_length.h"
 #include "model/motion_model.h"
 
 namespace marey {
@@ -33,17 +34,13 @@ struct ClipScore {
   bool tooShort() const { return frames <= firstFrame; }
 };
 
-/// Frames that a clip needs to have one that can be scored: the one rule on clips that are too
-/// short. Scoring several leaves those empty (ClipScore::tooShort), for the caller to count and
-/// name; scoring one alone refuses it.
-int fewestFrames(const ModelInfo& info);
-
 /// Why a clip cannot be scored with others under a model: its joints are not the model's. Empty: it
 /// can.
 std::string whyNotScored(const ModelInfo& info, const Clip& clip);
 
 /// Scores of many sequences, which advance together where the model can; a sequence's score does
-/// not depend on the others. Those too short are left empty. Throws CancelledError within a
+/// not depend on the others. Those too short (fewestFrames) are left empty, for the caller to count
+/// and name; scoring one alone refuses it. Throws CancelledError within a
 /// frame's time.
 std::vector<ClipScore> scoreSequences(const MotionModel& model,
                                       std::span<const FeatureSequence> sequences, bool standardised,

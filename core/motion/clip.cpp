@@ -91,6 +91,7 @@ Clip sliceFrames(const Clip& clip, int first, int last) {
   if (clip.transforms)
     out.transforms = {sliceRows(clip.transforms->rotations, width, first, last),
                       sliceRows(clip.transforms->translations, width, first, last)};
+  out.annotations = startingAt(clip.annotations, first / clip.fps);
   return out;
 }
 

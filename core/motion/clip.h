@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "motion/annotations.h"
 #include "motion/skeleton.h"
 
 namespace marey {
@@ -43,6 +44,7 @@ struct Clip {
   std::vector<Vec3> positions;                ///< world, frames x joints
   std::optional<JointTransforms> transforms;  ///< where the source has rotations
   ClipSource source;
+  Annotations annotations = {};  ///< of files beside its own, where there are any
 
   int jointCount() const { return skeleton ? skeleton->jointCount() : 0; }
   int frameCount() const {

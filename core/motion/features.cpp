@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "base/error.h"
+#include "motion/control/encode_control.h"
 #include "motion/representation/representation.h"
 #include "motion/resample.h"
 
@@ -142,6 +143,24 @@ std::vector<RootFrame> trajectoryFromControl(const Matrix& control, const RootFr
   return out;
 }
 
+namespace {
+
+Place placeOf(const Clip& clip) {
+  return {.path = clip.source.path.empty() ? clip.name : clip.source.path};
+}
+
+}  // namespace
+
+ControlRequest requestOf(const Clip& clip, const FeatureSpec& spec,
+                         std::shared_ptr<const Skeleton> body) {
+  ControlRequest out{.annotations = clip.annotations, .body = std::move(body), .leftOut = {}};
+  const ControlChannel* type = channelOf(spec.control, ControlKind::Label);
+  if (type && type->fromNames && out.annotations.labels.empty())
+    if (const std::string label = labelInName(*type, clip.name); !label.empty())
+      out.annotations.labels = {{.label = label}};
+  return out;
+}
+
 FeatureSequence extractFeatures(const Clip& source, const FeatureSpec& spec,
                                 std::shared_ptr<const Skeleton> skeleton) {
   validate(source);
@@ -151,7 +170,8 @@ FeatureSequence extractFeatures(const Clip& source, const FeatureSpec& spec,
   const auto trajectory = rootTrajectory(ready.clip, spec);
   return {.name = ready.clip.name,
           .pose = poses.encode(ready.clip, *skeleton, trajectory),
-          .control = controlFromTrajectory(trajectory),
+          .control = encodeControl(spec.control, trajectory, requestOf(ready.clip, spec, skeleton),
+                                   spec.fps, placeOf(source)),
           .start = trajectory.front(),
           .fitM = ready.fitM};
 }
@@ -160,9 +180,9 @@ Clip rebuildMotion(const Matrix& pose, const Matrix& control, const RootFrame& s
                    std::shared_ptr<const Skeleton> skeleton, const FeatureSpec& spec) {
   const Representation& poses = representationOf(spec, "features");
   const int width = poses.width(*skeleton);
-  if (pose.cols() != width || control.cols() != 3 || control.rows() != pose.rows())
+  if (pose.cols() != width || control.cols() < 3 || control.rows() != pose.rows())
     throwInput({.path = "features"},
-               fmt::format("poses of {} values and 3 controls per frame", width),
+               fmt::format("poses of {} values and at least 3 controls per frame", width),
                "{} x {} poses, {} x {} controls", pose.rows(), pose.cols(), control.rows(),
                control.cols());
   Clip out = poses.decode(pose, trajectoryFromControl(control, start), std::move(skeleton));
@@ -174,8 +194,7 @@ FeatureSequence mirrored(const FeatureSequence& in, const FeatureSpec& spec,
                          const Skeleton& skeleton) {
   FeatureSequence out = in;
   out.pose = representationOf(spec, in.name).mirror(in.pose, skeleton);
-  out.control.col(0) *= -1.f;
-  out.control.col(2) *= -1.f;
+  out.control = mirroredControl(spec.control, spec.fps, in.control, skeleton);
   out.start = {-in.start.x, in.start.z, -in.start.heading};
   return out;
 }
@@ -186,7 +205,7 @@ FeatureSequence timeReversed(const FeatureSequence& in, const FeatureSpec& spec)
   const auto trajectory = trajectoryFromControl(in.control, in.start);
   // Backwards, each step is undone; it is expressed in the frame it now starts from.
   std::vector<RootFrame> backwards(trajectory.rbegin(), trajectory.rend());
-  out.control = controlFromTrajectory(backwards);
+  out.control = reversedControl(spec.control, spec.fps, in.control, backwards);
   out.start = backwards.front();
   return out;
 }

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "motion/clip.h"
+#include "motion/control/control_layout.h"
 #include "motion/roles.h"
 
 namespace marey {
@@ -23,6 +24,9 @@ struct FeatureSpec {
   double fps = 20.0;
   double rootSigmaS = 0.25;    ///< Gaussian filter of the root's floor position, seconds
   double facingSigmaS = 0.25;  ///< Gaussian filter of the facing direction, seconds
+  ControlLayout control = {ControlChannel{}};
+
+  int controlWidth() const { return widthOf(control, fps); }
 
   bool operator==(const FeatureSpec&) const = default;
 };
@@ -35,9 +39,10 @@ struct RootFrame {
 
 /// One clip as a model sees it.
 /// pose [T, D]: in the root frame, as the representation has it.
-/// control [T, 3]: the root's sideways (+left) and forward displacement in metres and its turn
-/// in radians since the previous frame, in the previous root frame. Row 0 repeats row 1 (zero
-/// for a clip of one frame): it has no previous frame.
+/// control [T, C]: as FeatureSpec::control has it. Its first three values are the root's sideways
+/// (+left) and forward displacement in metres and its turn in radians since the previous frame, in
+/// the previous root frame; there row 0 repeats row 1 (zero for a clip of one frame): it has no
+/// previous frame.
 struct FeatureSequence {
   std::string name;
   Matrix pose;
@@ -45,6 +50,9 @@ struct FeatureSequence {
   RootFrame start;  ///< root frame of row 0
   /// Where rotations had to be fitted to positions: how far that moved a joint at most, metres.
   double fitM = 0.0;
+  /// Whose poses they are, where that is another body than that of the data set or model; null:
+  /// that.
+  std::shared_ptr<const Skeleton> body = nullptr;
 
   int frameCount() const { return static_cast<int>(pose.rows()); }
 };
@@ -56,12 +64,15 @@ std::vector<RootFrame> rootTrajectory(const Clip& clip, const FeatureSpec& spec)
 /// The same of a clip of any joints: one whose hips are not known by name faces where it moves to.
 std::vector<RootFrame> rootPath(const Clip& clip, const FeatureSpec& spec);
 
-/// Control rows [T, 3] between successive root frames, and back by integration in double.
+/// Root motion [T, 3] between successive root frames, and back, of the first three values of
+/// control, by integration in double.
 Matrix controlFromTrajectory(const std::vector<RootFrame>& trajectory);
 std::vector<RootFrame> trajectoryFromControl(const Matrix& control, const RootFrame& start);
 
-/// Resamples to spec.fps and extracts pose and control. Rotations are relative to the rest pose of
-/// `skeleton`; null: of the clip's own. Throws InputError on invalid clips and unknown layouts.
+/// Resamples to spec.fps and extracts pose and control, of which what the clip's annotations and
+/// its name do not say is left out where it may be. Rotations are relative to the rest pose of
+/// `skeleton`; null: of the clip's own. Throws InputError on invalid clips and unknown layouts, and
+/// where control is missing that may not be left out.
 FeatureSequence extractFeatures(const Clip& clip, const FeatureSpec& spec,
                                 std::shared_ptr<const Skeleton> skeleton = nullptr);
 

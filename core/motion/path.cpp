@@ -211,4 +211,17 @@ std::vector<RootFrame> samplePath(const std::vector<WayPoint>& points, double fp
   return out;
 }
 
+std::vector<LabelSpan> pathLabels(const std::vector<WayPoint>& points, const std::string& origin) {
+  checkPoints(points, origin);
+  const auto times = arrivalTimes(points, Spline(points), origin);
+  std::vector<LabelSpan> out;
+  for (size_t i = 0; i + 1 < points.size(); ++i) {
+    if (points[i].type.empty() || (!out.empty() && out.back().label == points[i].type)) continue;
+    const double fromS = times[i] - times.front();
+    if (!out.empty()) out.back().toS = fromS;
+    out.push_back({.fromS = fromS, .label = points[i].type});
+  }
+  return out;
+}
+
 }  // namespace marey

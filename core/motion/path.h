@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "motion/annotations.h"
 #include "motion/features.h"
 
 namespace marey {
@@ -18,6 +19,7 @@ struct WayPoint {
   std::optional<double> timeS;    ///< when to be there; or
   std::optional<double> speedMS;  ///< how fast to leave it
   std::optional<double> facing;   ///< heading in radians; default: along the path
+  std::string type = {};          ///< label of the motion from here on; empty: as before, or none
 
   bool operator==(const WayPoint&) const = default;
 };
@@ -27,9 +29,14 @@ struct WayPoint {
 std::vector<RootFrame> samplePath(const std::vector<WayPoint>& points, double fps,
                                   const std::string& origin);
 
-/// A path file: JSON {"waypoints": [{"x","z","time"|"speed","facing_deg"}...], "facing":
+/// The labels of the stretches between way-points, in the time of samplePath's frames. Throws as
+/// samplePath.
+std::vector<LabelSpan> pathLabels(const std::vector<WayPoint>& points, const std::string& origin);
+
+/// A path file: JSON {"waypoints": [{"x","z","time"|"speed","facing_deg","type"}...], "facing":
 /// "path"|"fixed"}, or a table (CSV with commas, semicolons or tabs) whose first row names its
-/// columns: x and z in metres, and time (seconds), speed (m/s), facing_deg where they are known.
+/// columns: x and z in metres, and time (seconds), speed (m/s), facing_deg, type where they are
+/// known.
 /// Throws FileError or InputError naming the key or line.
 std::vector<WayPoint> readPathFile(const std::filesystem::path& file);
 /// What of the way-points has no effect: a sentence each.

@@ -1,15 +1,12 @@
 // Path files, and what stands in them without effect.
-#include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_kind.h"
+#include "base/text_table.h"
 #include "motion/path.h"
 
 namespace marey {
@@ -33,122 +30,49 @@ double degreesOf(double radians) {
   return nearest;
 }
 
-/// Rows of a table with line ends of any system, without a byte-order mark.
-std::vector<std::string> linesOf(std::string text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  std::vector<std::string> out(1);
-  for (size_t i = 0; i < text.size(); ++i) {
-    const bool end = text[i] == '\n' || text[i] == '\r';
-    if (text[i] == '\r' && i + 1 < text.size() && text[i + 1] == '\n') ++i;
-    if (end)
-      out.emplace_back();
-    else
-      out.back() += text[i];
-  }
-  return out;
-}
-
-std::string trimmed(const std::string& text) {
-  const size_t first = text.find_first_not_of(" \t\"");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\"") - first + 1);
-}
-
-std::vector<std::string> fieldsOf(const std::string& line, char separator) {
-  std::vector<std::string> out;
-  for (size_t begin = 0; begin <= line.size();) {
-    const size_t end = std::min(line.find(separator, begin), line.size());
-    out.push_back(trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return out;
-}
-
-/// "Time_s" -> "time".
-std::string columnName(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const char* unit : {"_s", "_m", " (s)", " (m)", "[s]", "[m]"})
-    if (name.ends_with(unit)) name.resize(name.size() - std::string_view(unit).size());
-  name = trimmed(name);
-  return name == "t" || name == "seconds" ? "time" : name;
-}
-
-class TableReader {
- public:
-  TableReader(const std::filesystem::path& file, std::string text)
-      : m_origin(file.string()), m_lines(linesOf(std::move(text))) {}
-
-  std::vector<WayPoint> read() {
-    size_t at = 0;
-    while (at < m_lines.size() && isRemark(m_lines[at])) ++at;
-    if (at == m_lines.size()) throw InputError({.path = m_origin}, kForms, "an empty file");
-    readHeader(at);
-    std::vector<WayPoint> out;
-    for (++at; at < m_lines.size(); ++at)
-      if (!isRemark(m_lines[at])) out.push_back(pointAt(at));
-    return out;
-  }
-
- private:
-  static bool isRemark(const std::string& line) {
-    const std::string text = trimmed(line);
-    return text.empty() || text.starts_with('#');
-  }
-
-  Place place(size_t line, const std::string& item = {}) const {
-    return {.path = m_origin, .line = static_cast<int64_t>(line) + 1, .item = item};
-  }
-
-  void readHeader(size_t line) {
-    for (const char separator : {',', ';', '\t'})
-      if (m_lines[line].find(separator) != std::string::npos) {
-        m_separator = separator;
-        break;
-      }
-    const std::vector<std::string> names = fieldsOf(m_lines[line], m_separator);
-    m_width = names.size();
-    for (size_t i = 0; i < names.size(); ++i) m_columns.try_emplace(columnName(names[i]), i);
-    if (m_columns.contains("x") && m_columns.contains("z")) return;
-    const bool motion = m_lines[line].starts_with("HIERARCHY");
-    throw InputError(place(line), kForms,
-                     quotedStart(m_lines[line]) + (motion ? " (a motion file is clip:FILE)" : ""));
-  }
-
-  std::optional<double> numberAt(const std::vector<std::string>& fields, const std::string& column,
-                                 size_t line) const {
-    const auto at = m_columns.find(column);
-    if (at == m_columns.end() || fields[at->second].empty()) return std::nullopt;
-    const std::string& text = fields[at->second];
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-      throw InputError(place(line, "column '" + column + "'"), "a finite number",
-                       quotedStart(text));
-    return value;
-  }
-
-  WayPoint pointAt(size_t line) const {
-    const std::vector<std::string> fields = fieldsOf(m_lines[line], m_separator);
-    if (fields.size() != m_width)
-      throwInput(place(line), fmt::format("{} columns", m_width), "{}", fields.size());
-    const auto x = numberAt(fields, "x", line), z = numberAt(fields, "z", line);
-    if (!x || !z) throw InputError(place(line), "numbers for x and z", quotedStart(m_lines[line]));
-    WayPoint out{.x = *x,
-                 .z = *z,
-                 .timeS = numberAt(fields, "time", line),
-                 .speedMS = numberAt(fields, "speed", line),
-                 .facing = numberAt(fields, "facing_deg", line)};
-    if (out.facing) out.facing = kRadians * *out.facing;
-    return out;
-  }
-
-  std::string m_origin;
-  std::vector<std::string> m_lines;
-  char m_separator = ',';
-  size_t m_width = 0;
-  std::map<std::string, size_t> m_columns;
+/// Where its columns stand.
+struct PathColumns {
+  size_t x, z;
+  std::optional<size_t> time, speed, facing, type;
 };
+
+PathColumns columnsOf(const TextTable& table, const std::string& text) {
+  const auto x = table.find("x"), z = table.find("z");
+  if (x && z)
+    return {*x,
+            *z,
+            table.find("time"),
+            table.find("speed"),
+            table.find("facing_deg"),
+            table.find("type")};
+  const bool motion = text.starts_with("HIERARCHY");
+  throw InputError({.path = table.origin(), .line = table.firstLine()}, kForms,
+                   quotedStart(text) + (motion ? " (a motion file is clip:FILE)" : ""));
+}
+
+WayPoint pointOf(const TextTable& table, const TextTable::Row& row, const PathColumns& columns) {
+  const auto numberAt = [&](const std::optional<size_t>& column) {
+    return column ? table.number(row, *column) : std::nullopt;
+  };
+  const auto x = numberAt(columns.x), z = numberAt(columns.z);
+  if (!x || !z) throw InputError(table.place(row), "numbers for x and z", "an empty field");
+  WayPoint out{.x = *x,
+               .z = *z,
+               .timeS = numberAt(columns.time),
+               .speedMS = numberAt(columns.speed),
+               .facing = numberAt(columns.facing)};
+  if (out.facing) out.facing = kRadians * *out.facing;
+  if (columns.type) out.type = row.fields[*columns.type];
+  return out;
+}
+
+std::vector<WayPoint> readTable(const std::string& text, const std::string& origin) {
+  const TextTable table(text, origin, kForms);
+  const PathColumns columns = columnsOf(table, text);
+  std::vector<WayPoint> out;
+  for (const TextTable::Row& row : table.rows()) out.push_back(pointOf(table, row, columns));
+  return out;
+}
 
 }  // namespace
 
@@ -172,6 +96,7 @@ std::vector<WayPoint> wayPointsFromJson(const Json& value, const std::string& or
     if (one.has("time")) p.timeS = one.required<double>("time");
     if (one.has("speed")) p.speedMS = one.required<double>("speed");
     if (one.has("facing_deg")) p.facing = kRadians * one.required<double>("facing_deg");
+    p.type = one.optional<std::string>("type", "");
     one.finish();
     // A fixed facing is that of the way-point before; at the start it is +Z.
     if (facing == "fixed" && !p.facing) p.facing = points.empty() ? 0.0 : *points.back().facing;
@@ -187,6 +112,7 @@ Json toJson(const std::vector<WayPoint>& points) {
     if (p.timeS) one["time"] = *p.timeS;
     if (p.speedMS) one["speed"] = *p.speedMS;
     if (p.facing) one["facing_deg"] = degreesOf(*p.facing);
+    if (!p.type.empty()) one["type"] = p.type;
     list.push_back(one);
   }
   return {{"waypoints", list}};
@@ -199,7 +125,7 @@ std::vector<WayPoint> readPathFile(const std::filesystem::path& file) {
     throw InputError({.path = file.string()}, kForms, "a JSON list");
   if (first != std::string::npos && text[first] == '{')
     return wayPointsFromJson(readJson(file), file.string());
-  return TableReader(file, std::move(text)).read();
+  return readTable(text, file.string());
 }
 
 void writePathFile(const std::filesystem::path& file, const std::vector<WayPoint>& points) {
@@ -208,6 +134,12 @@ void writePathFile(const std::filesystem::path& file, const std::vector<WayPoint
 
 std::vector<std::string> pathRemarks(const std::vector<WayPoint>& points) {
   std::vector<std::string> out;
+  if (!points.empty() && !points.back().type.empty() &&
+      (points.size() < 2 || points[points.size() - 2].type != points.back().type))
+    out.push_back(
+        fmt::format("the type of the last way-point ('{}') has no effect: no stretch "
+                    "follows; a type is that of leaving",
+                    points.back().type));
   for (size_t i = 0; i < points.size(); ++i) {
     if (!points[i].speedMS) continue;
     // It holds up to the next way-point that has a speed, where no time says otherwise.

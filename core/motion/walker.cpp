@@ -220,6 +220,7 @@ WalkerClip walk(const std::vector<RootFrame>& path, const WalkerOptions& options
   out.clip.fps = options.fps;
   out.clip.source.format = "walker";
   out.clip.source.fps = options.fps;
+  out.clip.annotations.labels = {{.label = options.style}};
   JointTransforms transforms;
   for (int i = pad; i < pad + count; ++i)
     body.pose(drives[i], heights[i], out.clip.positions, transforms);

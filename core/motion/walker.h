@@ -52,8 +52,8 @@ struct WalkerClip {
 
 std::shared_ptr<const Skeleton> walkerSkeleton();
 
-/// Walks the path (root frames at options.fps). A contact's ankle stays where it landed, bit for
-/// bit. Throws InputError on an empty path or unknown style.
+/// Walks the path (root frames at options.fps); the clip's label is the style. A contact's ankle
+/// stays where it landed, bit for bit. Throws InputError on an empty path or unknown style.
 WalkerClip walk(const std::vector<RootFrame>& path, const WalkerOptions& options);
 
 /// The data of the demo and of tests: clips of varied paths, speeds and styles. Deterministic.

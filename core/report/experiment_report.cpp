@@ -259,6 +259,7 @@ ReportData reportOf(const ExperimentResult& r, const std::string& command, Progr
   out.tables = {footstepTable(r)};
   for (Table& table : likelihoodTables(r)) out.tables.push_back(std::move(table));
   if (!r.experiment.paths.empty() && !r.systems.empty()) out.tables.push_back(obedienceTable(r));
+  if (!r.experiment.cases.empty() && !r.systems.empty()) out.tables.push_back(taskTable(r));
   for (Table& table : statisticTables(r, progress)) out.tables.push_back(std::move(table));
   if (!r.leftOut.empty()) out.notes.push_back({"Left out", leftOutText(r)});
   if (std::string text = filesText(r); !text.empty())

@@ -21,6 +21,8 @@ Table footstepTable(const ExperimentResult& result);
 /// One for each unit: only likelihoods of one unit can be compared. One without rows where there is
 /// no system.
 std::vector<Table> likelihoodTables(const ExperimentResult& result);
+/// Of a document with cases: what every system made of them.
+Table taskTable(const ExperimentResult& result);
 Table obedienceTable(const ExperimentResult& result);
 Table definitionTable();
 std::vector<Table> statisticTables(const ExperimentResult& result, Progress& progress);

@@ -1,6 +1,7 @@
 // Fill in joints and frames that are missing from a motion.
 #include <algorithm>
 
+#include "task/completions.h"
 #include "task/task_list.h"
 
 #include "base/error.h"
@@ -12,23 +13,6 @@ namespace {
 std::string whyNot(const MotionModel& model) {
   if (!model.info().skeleton) return "one without a skeleton";
   return model.completion() ? "" : "one that cannot fill in what is missing";
-}
-
-/// Controls with what the model sees before and after the clip: the first and last row again.
-Matrix paddedControls(const ModelInfo& info, const Matrix& control) {
-  Matrix out(info.context + control.rows() + info.lookahead, control.cols());
-  for (long i = 0; i < out.rows(); ++i)
-    out.row(i) = control.row(std::clamp<long>(i - info.context, 0, control.rows() - 1));
-  return out;
-}
-
-Matrix latentsOf(const ModelInfo& info, const TaskRequest& r, int sample, long frames) {
-  const bool perClip = info.latent.per == LatentSpec::Per::Clip;
-  Matrix out(perClip ? 1 : frames, info.latent.width);
-  for (long t = 0; t < out.rows(); ++t)
-    drawLatent(r.seed, sample, static_cast<int>(t), r.temperature, info.latent.degreesOfFreedom,
-               {out.row(t).data(), static_cast<size_t>(out.cols())});
-  return out;
 }
 
 /// Every value of a joint's channels is as known as the joint.
@@ -45,6 +29,24 @@ Matrix knownValues(const Matrix& joints, const FeatureSequence& features, const 
   return out;
 }
 
+/// What is not known as it was when it last was, or as it will first be.
+Matrix lastKnownHeld(const Matrix& poses, const Matrix& known) {
+  Matrix out = poses;
+  for (long j = 0; j < out.cols(); ++j) {
+    long last = -1;
+    for (long t = 0; t < out.rows(); ++t) {
+      if (known(t, j) != 0.F) {
+        for (long k = last < 0 ? 0 : t; k < t; ++k) out(k, j) = out(t, j);
+        last = t;
+      } else if (last >= 0) {
+        out(t, j) = out(last, j);
+      }
+    }
+    if (last < 0) out.col(j).setConstant(poses.col(j).mean());
+  }
+  return out;
+}
+
 TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progress) {
   const ModelInfo& info = model.info();
   if (!r.clip) throw InputError({.path = "complete"}, "a clip to complete", "none");
@@ -54,21 +56,13 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
   features.name = path;
   CompletionRequest request{.poses = features.pose,
                             .known = knownValues(r.knownJoints, features, info),
-                            .controls = paddedControls(info, features.control),
+                            .controls = {},
                             .latents = {}};
-  TaskOutcome out;
-  out.reference =
-      rebuildMotion(features.pose, features.control, features.start, info.skeleton, info.features);
-  for (int sample = 0; sample < r.samples; ++sample) {
-    request.latents = latentsOf(info, r, sample, features.pose.rows());
-    const FeatureSequence filled{
-        .name = fmt::format("sample_{:03}", sample),
-        .pose = model.completion()->complete(request, [&] { progress.throwIfCancelled(); }),
-        .control = features.control,
-        .start = features.start};
-    out.motions.push_back(sampledClip(model, filled));
-    progress.report((sample + 1.0) / r.samples, "completing");
-  }
+  TaskOutcome out{.motions = completions(model, features, request, r, progress),
+                  .reference = sampledClip(model, features),
+                  .without = {}};
+  features.pose = lastKnownHeld(features.pose, request.known);
+  out.without = sampledClip(model, features);
   return out;
 }
 
@@ -77,6 +71,14 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
 Task completeTask() {
   return {.name = "complete",
           .title = "fill in joints and frames that are missing",
+          .done = "completed",
+          .without = "the last known value held",
+          .example = "walk.bvh --mask known.csv --out completed",
+          .options = {{.name = "mask",
+                       .help = "Which joints are known: CSV or NPY, a row for each frame at the "
+                               "model's rate, a column for each joint; 1: known, 0: missing",
+                       .table = [](TaskRequest& r,
+                                   Matrix table) { r.knownJoints = std::move(table); }}},
           .whyNot = whyNot,
           .run = run};
 }

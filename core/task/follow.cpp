@@ -14,12 +14,18 @@ std::string whyNot(const MotionModel& model) {
 
 TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progress) {
   SampleRequest request{.path = r.path,
+                        .control = r.control,
                         .samples = r.samples,
                         .seed = r.seed,
                         .temperature = r.temperature,
                         .warmUpS = r.warmUpS};
-  if (request.path.empty() && r.clip) request.path = requestAlongClip(model, *r.clip, false).path;
-  return {.motions = sampleClips(model, request, progress), .reference = std::nullopt};
+  if (request.path.empty() && r.clip) {
+    SampleRequest along = requestAlongClip(model, *r.clip, false);
+    request.path = std::move(along.path);
+    request.control = std::move(along.control);
+    request.control.leftOut = r.control.leftOut;
+  }
+  return {.motions = sampleClips(model, request, progress), .reference = {}, .without = {}};
 }
 
 }  // namespace
@@ -27,6 +33,11 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
 Task followTask() {
   return {.name = "follow",
           .title = "make motion that goes along a path",
+          .done = "made",
+          .without = "",
+          .example = "--path preset:circle --out samples",
+          .from = Task::From::Path,
+          .options = {},
           .whyNot = whyNot,
           .run = run};
 }

@@ -1,6 +1,7 @@
 #include "task/pose_error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
@@ -38,6 +39,15 @@ PoseError poseError(std::span<const Clip> motions, const Clip& reference) {
     }
     out.meanCm += sum / (frames * count);
     out.bestCm = std::min(out.bestCm, sum / frames);
+  }
+  return out;
+}
+
+std::vector<std::pair<int, double>> errorsAtHorizons(const PoseError& error, double fps) {
+  std::vector<std::pair<int, double>> out;
+  for (const int ms : kHorizonsMs) {
+    const auto frame = static_cast<size_t>(std::max(0L, std::lround(ms * 1e-3 * fps) - 1));
+    if (frame < error.byFrameCm.size()) out.emplace_back(ms, error.byFrameCm[frame]);
   }
   return out;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "motion/clip.h"
@@ -18,5 +19,11 @@ struct PoseError {
 
 /// Over the frames that all have. Throws InputError without a motion or with other joints.
 PoseError poseError(std::span<const Clip> motions, const Clip& reference);
+
+/// Horizons at which prediction is usually judged, milliseconds.
+inline constexpr int kHorizonsMs[] = {80, 160, 320, 400, 560, 1000};
+/// (milliseconds, centimetres) of the horizons that the motions reach. Frame 0 of a motion is one
+/// frame after the last that was given.
+std::vector<std::pair<int, double>> errorsAtHorizons(const PoseError& error, double fps);
 
 }  // namespace marey

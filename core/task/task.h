@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "task/steering.h"
+
 #include "base/job.h"
 #include "model/sampler.h"
 
@@ -20,6 +22,8 @@ struct TaskRequest {
   /// frame of the last of them (placed there, whatever its own place); empty: the clip's own
   /// control.
   std::vector<RootFrame> path;
+  /// Beside `path`; with the clip's own control, only what is left out of it.
+  ControlRequest control = {};
   int samples = 1;
   uint64_t seed = 1;
   double temperature = 1.0;
@@ -28,17 +32,46 @@ struct TaskRequest {
   double seconds = 0.0;  ///< predict along the clip's own control: at most so long; 0: all of it
   /// complete: [frames at the model's rate, joints], 1 where a joint is known, else 0.
   Matrix knownJoints;
+  double noiseM = 0.0;  ///< denoise: deviation of the noise that is added to the clip first, metres
+  double levelM = 0.0;  ///< denoise: deviation of the noise that is taken out; 0: noiseM
+  std::optional<Steering> steering;  ///< steer; its seed and temperature are those above
 };
 
 struct TaskOutcome {
   std::vector<Clip> motions;
   /// What really came, frame by frame beside every motion; none where nobody knows.
   std::optional<Clip> reference;
+  /// What one would have without a model: the last seed frame held, joints that are missing held,
+  /// the noise left in. None where there is no reference.
+  std::optional<Clip> without;
+};
+
+/// What a task takes besides model, clips and samples: an option of its command (--seed-frames) and
+/// a key of a document's case ("seed_frames").
+struct TaskOption {
+  std::string name;  ///< with underscores
+  std::string help;
+  double least = 0.0;
+  bool whole = false;                                ///< whole numbers only
+  std::function<void(TaskRequest&, double)> number;  ///< or:
+  std::function<void(TaskRequest&, Matrix)> table;   ///< numbers of a CSV or NPY file
 };
 
 struct Task {
-  std::string name;   ///< "predict": of its command and key
-  std::string title;  ///< one line for people
+  enum class From {
+    Path,      ///< a path; the sampler's own command draws it
+    Clips,     ///< a clip each
+    Commands,  ///< steering: a command for every frame
+  };
+
+  std::string name;     ///< "predict": of its command and key
+  std::string title;    ///< one line for people
+  std::string done;     ///< "continued": what has become of its clips
+  std::string without;  ///< what TaskOutcome::without is; empty: nothing
+  std::string example;  ///< words after `marey NAME MODEL`
+  From from = From::Clips;
+  bool takesPath = false;  ///< beside clips: where to go in place of their own control
+  std::vector<TaskOption> options;
   /// Why a model cannot do it; empty: it can.
   std::function<std::string(const MotionModel&)> whyNot;
   /// Throws InputError (also where whyNot says something), NumericError and CancelledError.

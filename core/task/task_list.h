@@ -8,5 +8,7 @@ namespace marey {
 Task followTask();
 Task predictTask();
 Task completeTask();
+Task denoiseTask();
+Task steerTask();
 
 }  // namespace marey

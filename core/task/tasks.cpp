@@ -7,7 +7,8 @@
 namespace marey {
 
 std::span<const Task> tasks() {
-  static const std::array all{followTask(), predictTask(), completeTask()};
+  static const std::array all{followTask(), steerTask(), predictTask(), completeTask(),
+                              denoiseTask()};
   return all;
 }
 

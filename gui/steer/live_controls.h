@@ -6,7 +6,7 @@
 #include <QWidget>
 #include <set>
 
-#include "experiment/live_rollout.h"
+#include "task/live_rollout.h"
 
 namespace marey::gui {
 

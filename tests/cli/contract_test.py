@@ -8,9 +8,9 @@ from xml.etree import ElementTree
 from support import (Case, SharedModelCase, gltf_floats, listing, main, marey, need_tools,
                      read_gltf, without_rotations)
 
-COMMANDS = ["demo", "doctor", "convert", "prepare", "train", "sample", "predict", "score",
-            "analyze", "report", "render", "model info", "model example", "model import",
-            "model export", "model check", "bench render"]
+COMMANDS = ["demo", "doctor", "convert", "prepare", "train", "sample", "steer", "predict",
+            "complete", "denoise", "score", "analyze", "report", "render", "model info",
+            "model example", "model import", "model export", "model check", "bench render"]
 SHARED_OPTIONS = ["--json", "--quiet", "--seed", "--threads"]
 
 

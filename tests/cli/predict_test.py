@@ -21,7 +21,7 @@ class Predict(Case):
         for file in found["clips"]:
             doctor = self.run_json("doctor", file)["files"][0]
             self.assertEqual((doctor["frames"], doctor["fps"]), (40, 20.0))
-        error = found["predictions"][0]["error"]
+        error = found["results"][0]["error"]
         self.assertEqual(sorted(error["at_ms_cm"], key=int),
                          ["80", "160", "320", "400", "560", "1000"])
         # A model of this walker is near it for a tenth of a second, and nearer than later.
@@ -42,6 +42,61 @@ class Predict(Case):
                               "--seconds", "2", "--out", self.dir / "p")
         self.assertEqual(len(found["clips"]), 2)
         self.assertNotIn("error", found)
+
+    def test_the_error_stands_beside_that_of_no_model(self):
+        found = self.run_json("predict", DEMO, self.clip, "--seed-frames", "20", "--seconds", "1",
+                              "--format", "npz", "--out", self.dir / "p")
+        result = found["results"][0]
+        # A walker that stands still falls behind; a model of it does not.
+        self.assertLess(result["error"]["mean_cm"], result["error_without_model"]["mean_cm"])
+        self.assertEqual(found["error"]["without_model_cm"],
+                         result["error_without_model"]["mean_cm"])
+
+    def test_commands_steer(self):
+        commands = self.dir / "commands.csv"
+        commands.write_text("time,forward,turn_deg\n0,1,0\n1,1,45\n2,0,0\n")
+        found = self.run_json("steer", DEMO, commands, "-n", "2", "--format", "npz",
+                              "--out", self.dir / "s")
+        self.assertEqual([f.split("/")[-1] for f in found["clips"]],
+                         ["commands_000.npz", "commands_001.npz"])
+        doctor = self.run_json("doctor", found["clips"][0])["files"][0]
+        self.assertEqual((doctor["frames"], doctor["fps"]), (60, 20.0))
+        for text, expected in (("time,forward\n0,1\n", "two rows"),
+                               ("time,forward\n1,1\n0,1\n", ".csv:3"),
+                               ("time,foreward\n0,1\n1,1\n", "'foreward'")):
+            commands.write_text(text)
+            self.assert_refused(["steer", DEMO, commands, "--out", self.dir / "t"], expected)
+
+    def test_what_no_model_can_do_is_said_before_any_work(self):
+        mask = self.dir / "mask.csv"
+        mask.write_text("1\n")
+        self.assert_refused(["complete", DEMO, self.clip, "--mask", mask, "--out", self.dir / "c"],
+                            "can complete", "cannot fill in")
+        self.assert_refused(["denoise", DEMO, self.clip, "--noise", "0.02", "--out",
+                             self.dir / "c"], "can denoise", "cannot take noise out")
+
+    def test_a_document_asks_every_system(self):
+        document = {"natural": [str(self.dir / "walks")], "paths": [], "held_out_samples": 1,
+                    "systems": [{"name": "demo", "model": str(DEMO)}],
+                    "cases": [{"name": "soon", "task": "predict", "samples": 2,
+                               "options": {"seed_frames": 20, "seconds": 1}},
+                              {"name": "clean", "task": "denoise", "options": {"noise": 0.02}}]}
+        file = self.dir / "experiment.json"
+        file.write_text(json.dumps(document))
+        report = self.run_json("report", file, "--out", self.dir / "r")
+        table = json.loads(next(pathlib.Path(t).with_suffix(".json").read_text()
+                                for t in report["tables"] if "tasks" in t))
+        self.assertEqual([row[:2] for row in table["rows"]],
+                         [["soon", "the last frame held"], ["soon", "demo"]])
+        self.assertLess(table["rows"][1][2], table["rows"][0][2])
+        self.assertIn("demo cannot denoise", table["caption"])
+        for key, value, expected in (("options", {"seedframes": 20}, "options.seedframes"),
+                                     ("task", "dance", "predict, complete, denoise"),
+                                     ("sample", 2, "cases[0].sample")):
+            wrong = json.loads(json.dumps(document))
+            wrong["cases"][0][key] = value
+            file.write_text(json.dumps(wrong))
+            self.assert_refused(["report", file, "--out", self.dir / "w"], expected)
 
     def test_refuses_what_cannot_be_continued(self):
         self.assert_refused(["predict", DEMO, self.clip, "--seed-frames", "80",

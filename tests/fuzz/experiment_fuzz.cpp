@@ -1,5 +1,6 @@
 // Experiment documents and the training of configurations: whatever the bytes, a value that is
 // written and read back the same, or an Error.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -7,6 +8,26 @@
 
 #include "experiment/document.h"
 #include "model/gradient/schedules.h"
+
+// The tasks of documents, without the models that would do them.
+namespace marey {
+
+std::span<const Task> tasks() {
+  static const std::array all{
+      Task{.name = "predict",
+           .options = {{.name = "seed_frames", .whole = true, .number = [](auto&, double) {}},
+                       {.name = "seconds", .number = [](auto&, double) {}}}},
+      Task{.name = "complete", .options = {{.name = "mask", .table = [](auto&, Matrix) {}}}}};
+  return all;
+}
+
+const Task& taskNamed(const std::string& name) {
+  for (const Task& task : tasks())
+    if (task.name == name) return task;
+  throw InputError({.path = "task"}, "a known one", name);
+}
+
+}  // namespace marey
 
 namespace {
 

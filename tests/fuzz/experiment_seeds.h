@@ -13,6 +13,11 @@ inline Json wholeDocument() {
           {"natural", {"walker:4,10,1"}},
           {"systems", {{{"name", "A"}, {"model", "a.marey"}, {"temperature", 0.9}}}},
           {"paths", {{{"name", "ahead"}, {"path", "preset:slow"}, {"seconds", 5.0}}}},
+          {"cases",
+           {{{"name", "soon"},
+             {"task", "predict"},
+             {"samples", 2},
+             {"options", {{"seed_frames", 20}, {"seconds", 1.5}}}}}},
           {"samples", 2},
           {"held_out_samples", 0},
           {"seed", 7},
@@ -25,8 +30,14 @@ inline Json wholeDocument() {
 inline Json pathKinds() {
   const Json points = {{{"x", 0.0}, {"z", 0.0}, {"speed", 1.2}},
                        {{"x", 0.5}, {"z", 2.0}, {"time", 2.5}, {"facing_deg", 90.0}},
-                       {{"x", 1.0}, {"z", 3.0}}};
+                       {{"x", 1.0}, {"z", 3.0}, {"type", "run"}}};
   return {{{"name", "drawn"}, {"waypoints", points}, {"seconds", 0.0}},
+          {{"name", "asked"},
+           {"path", "preset:slow"},
+           {"type", "walk"},
+           {"signals", {{"speech", "speech.npy"}}},
+           {"left_out", {"music"}},
+           {"body", "tall.bvh"}},
           {{"name", "followed"}, {"path", "clip:walk.bvh"}, {"start", "clip"}, {"seconds", 3.0}}};
 }
 

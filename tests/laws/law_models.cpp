@@ -1,6 +1,7 @@
 #include "law_models.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <sstream>
@@ -78,6 +79,35 @@ const DataSet& data() {
     Progress progress;
     DataSet out = prepareDataSet(walks(4, 4.0, 2), walks(1, 4.0, 9), {}, progress);
     out.hash = "laws";
+    return out;
+  }();
+  return set;
+}
+
+std::vector<Clip> walksWithBeat(int count, double seconds, uint64_t seed) {
+  auto out = walks(count, seconds, seed);
+  for (size_t i = 0; i < out.size(); ++i) {
+    Signal beat{.fps = 50.0, .columns = {"loud"}, .values = {}};
+    for (int t = 0; t < 50.0 * seconds; ++t)
+      beat.values.push_back(std::sin(0.1F * static_cast<float>(t) + static_cast<float>(i)));
+    out[i].annotations.signals["beat"] = std::move(beat);
+  }
+  return out;
+}
+
+const DataSet& controlledData() {
+  static const DataSet set = [] {
+    Progress progress;
+    PrepareOptions options{.reverse = false};
+    options.features.control = {
+        ControlChannel{},
+        {.name = "path", .kind = ControlKind::FuturePath, .optional = true, .aheadS = {0.3, 0.6}},
+        {.name = "type", .kind = ControlKind::Label},
+        {.name = "body", .kind = ControlKind::Skeleton},
+        {.name = "beat", .kind = ControlKind::Array, .optional = true, .futureS = 0.2}};
+    DataSet out =
+        prepareDataSet(walksWithBeat(6, 4.0, 2), walksWithBeat(1, 4.0, 9), options, progress);
+    out.hash = "controlled laws";
     return out;
   }();
   return set;

@@ -22,6 +22,12 @@ std::vector<Clip> walks(int count, double seconds, uint64_t seed);
 /// Of the walker.
 const DataSet& data();
 
+/// Walks with a signal, "beat".
+std::vector<Clip> walksWithBeat(int count, double seconds, uint64_t seed);
+/// Of the walker, with control of every kind: "path" and "beat" may be left out, "type" (the
+/// walker's style) and "body" may not.
+const DataSet& controlledData();
+
 /// The example of a family, trained for 20 steps where it is trained.
 struct Made {
   TrainResult result;

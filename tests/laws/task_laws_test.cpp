@@ -22,6 +22,8 @@ TaskRequest requestFor(const MotionModel& model, const Clip& clip) {
   const FeatureSequence features = featuresOf(model.info(), clip);
   out.knownJoints = Matrix::Ones(features.frameCount(), clip.jointCount());
   out.knownJoints.rightCols(3).setZero();
+  out.noiseM = 0.02;
+  out.steering = Steering{.options = {}, .commands = {30, LiveCommand{.forwardMS = 1.0}}};
   return out;
 }
 
@@ -109,6 +111,45 @@ TEST(Predict, IsJudgedByWhatCame) {
     EXPECT_FALSE(free.reference);
     EXPECT_EQ(free.motions[0].frameCount(), 15);
   }
+}
+
+/// Steering goes the way that it was told, each sample on its own latents.
+TEST(Steer, GoesWhereItIsTold) {
+  const Clip clip = walks(1, 3.0, 8).front();
+  Progress progress;
+  for (const ModelFamily& family : allSystems()) {
+    const auto model = family.load(test::law::madeBy(family).file, "law.marey", {});
+    if (!taskNamed("steer").whyNot(*model).empty()) continue;
+    TaskRequest request = requestFor(*model, clip);
+    request.steering->options.smoothingS = 0.0;
+    request.steering->options.begin = request.steering->commands.front();
+    const TaskOutcome outcome = runTask(taskNamed("steer"), *model, request, progress);
+    ASSERT_EQ(outcome.motions[0].frameCount(), 30) << systemName(family);
+    EXPECT_FALSE(outcome.reference);
+    const auto root = rootPath(outcome.motions[0], {.rootSigmaS = 0.0, .facingSigmaS = 0.0});
+    EXPECT_NEAR(root.back().z - root.front().z, 29 * 0.05, 0.5) << systemName(family);
+    if (model->info().deterministic()) continue;
+    EXPECT_FALSE(outcome.motions[0].positions == outcome.motions[1].positions);
+  }
+}
+
+/// The toy's poses lie in a plane of two directions: noise off that plane goes.
+TEST(Denoise, TakesNoiseOutOfWhatAModelKnows) {
+  const auto family = test::toyFamily();
+  const auto model = family.load(test::law::madeBy(family).file, "law.marey", {});
+  Progress progress;
+  const Task& denoise = taskNamed("denoise");
+  TaskRequest request{.clip = walks(1, 3.0, 8).front(), .path = {}, .seed = 4};
+  const Clip own = runTask(denoise, *model, request, progress).motions.front();
+  EXPECT_FALSE(runTask(denoise, *model, request, progress).reference);
+  request.clip = own;  // of the toy's own poses, nearly
+  request.noiseM = 0.05;
+  const TaskOutcome outcome = runTask(denoise, *model, request, progress);
+  ASSERT_TRUE(outcome.reference && outcome.without);
+  const double before = poseError({&*outcome.without, 1}, *outcome.reference).meanCm;
+  // The mean length of a normal vector of three values: sqrt(8 / pi) deviations.
+  EXPECT_NEAR(before, 5.0 * std::sqrt(8.0 / M_PI), 0.2);
+  EXPECT_LT(poseError(outcome.motions, *outcome.reference).meanCm, 0.5 * before);
 }
 
 TEST(Complete, KeepsWhatIsKnown) {

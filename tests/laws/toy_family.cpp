@@ -75,6 +75,7 @@ class Toy : public MotionModel,
     }
     return out;
   }
+  bool denoises() const override { return true; }
   /// The latents that suit the known values best, and the poses that they give.
   Matrix complete(const CompletionRequest& r, const std::function<void()>& between) const override {
     Matrix out = posesOf(r.controls, r.latents);
@@ -84,10 +85,11 @@ class Toy : public MotionModel,
       const Eigen::MatrixXf seen = m_latent * r.known.row(t).asDiagonal();
       const Eigen::MatrixXf gram =
           seen * seen.transpose() +
-          1e-3F * Eigen::MatrixXf::Identity(m_latent.rows(), m_latent.rows());
+          (r.noise.empty() ? 1e-3F : static_cast<float>(r.noise[0] * r.noise[0])) *
+              Eigen::MatrixXf::Identity(m_latent.rows(), m_latent.rows());
       out.row(t) += (gram.ldlt().solve(seen * rest.transpose())).transpose() * m_latent;
       for (long j = 0; j < out.cols(); ++j)
-        if (r.known(t, j) != 0.F) out(t, j) = r.poses(t, j);
+        if (r.known(t, j) != 0.F && r.noise.empty()) out(t, j) = r.poses(t, j);
     }
     return out;
   }

@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "experiment/live_rollout.h"
 #include "experiment/motions.h"
 #include "experiment/steering/gamepad.h"
+#include "task/live_rollout.h"
 
 namespace marey {
 

@@ -48,6 +48,26 @@ Batches::Batches(const std::vector<FeatureSequence>& sequences, const Standardis
                   .to(device);
 }
 
+void Batches::hideControl(const FeatureSpec& features, double share) {
+  m_hiddenShare = share;
+  for (const ControlColumns& at : columnsOf(features.control, features.fps))
+    if (at.presence >= 0) m_hidden.push_back({at.first, at.end() - at.first});
+}
+
+/// Zero is the mean of a control, and the presence of one that is left out.
+void Batches::hide(uint64_t seed, int64_t step, TrainingBatch& batch) const {
+  const int64_t windows = batch.control.size(0);
+  for (size_t c = 0; c < m_hidden.size(); ++c)
+    for (int64_t i = 0; i < windows; ++i) {
+      const RandomKey key{.seed = seed,
+                          .sample = static_cast<uint32_t>(i),
+                          .frame = static_cast<uint32_t>(step),
+                          .stage = RandomStage::Control};
+      if (uniformAt(key, static_cast<uint32_t>(c)) < m_hiddenShare)
+        batch.control.select(0, i).narrow(-1, m_hidden[c].first, m_hidden[c].width).zero_();
+    }
+}
+
 void Batches::shuffleFor(uint64_t seed, int64_t epoch) {
   if (m_epoch == epoch) return;
   m_order.resize(m_windows.size());
@@ -67,7 +87,9 @@ TrainingBatch Batches::forStep(uint64_t seed, int64_t step, int64_t batch) {
     shuffleFor(seed, i / windowCount());
     chosen.push_back(m_order[static_cast<size_t>(i % windowCount())]);
   }
-  return gather(chosen);
+  TrainingBatch out = gather(chosen);
+  hide(seed, step, out);
+  return out;
 }
 
 TrainingBatch Batches::inOrder(int64_t first, int64_t count) const {

@@ -15,6 +15,9 @@ class Batches {
   Batches(const std::vector<FeatureSequence>& sequences, const Standardiser& standardiser,
           int windowFrames, int hopFrames, torch::Device device);
 
+  /// Leaves controls that may be left out in a share of the windows of every step.
+  void hideControl(const FeatureSpec& features, double share);
+
   int64_t windowCount() const { return static_cast<int64_t>(m_windows.size()); }
   /// The batch of training step `step`: windows in the order of an epoch-wise shuffle.
   TrainingBatch forStep(uint64_t seed, int64_t step, int64_t batch);
@@ -23,6 +26,12 @@ class Batches {
   TrainingFrames frames(int64_t context, int64_t lookahead) const;
 
  private:
+  /// Columns of a control that may be left out: its values, and its presence.
+  struct Hidden {
+    int64_t first, width;
+  };
+
+  void hide(uint64_t seed, int64_t step, TrainingBatch& batch) const;
   TrainingBatch gather(const std::vector<int64_t>& windows) const;
   void shuffleFor(uint64_t seed, int64_t epoch);
 
@@ -31,6 +40,8 @@ class Batches {
   std::vector<int64_t> m_lengths;
   int64_t m_windowFrames;
   torch::Tensor m_pose, m_control;
+  std::vector<Hidden> m_hidden;
+  double m_hiddenShare = 0.0;
   int64_t m_epoch = -1;
   std::vector<int64_t> m_order;
 };

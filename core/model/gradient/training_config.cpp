@@ -100,6 +100,9 @@ void readInputs(JsonReader& reader, TrainingConfig& c) {
   c.inputDropout = reader.optional("input_dropout", c.inputDropout);
   require(c.inputDropout >= 0 && c.inputDropout < 1, reader, "input_dropout", "a share in [0, 1)",
           c.inputDropout);
+  c.controlDropout = reader.optional("control_dropout", c.controlDropout);
+  require(c.controlDropout >= 0 && c.controlDropout <= 1, reader, "control_dropout",
+          "a share in [0, 1]", c.controlDropout);
   if (reader.has("scheduled_sampling"))
     c.scheduledSampling = scheduledSamplingFrom(reader.object("scheduled_sampling"));
 }
@@ -161,6 +164,7 @@ Json toJson(const TrainingConfig& c) {
               {"clip_norm", c.clipNorm},
               {"input_noise", c.inputNoise},
               {"input_dropout", c.inputDropout},
+              {"control_dropout", c.controlDropout},
               {"ema", c.ema},
               {"steps", c.steps},
               {"checkpoint_every", c.checkpointEvery},

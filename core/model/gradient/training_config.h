@@ -36,6 +36,8 @@ struct TrainingConfig {
   /// Share of those values that are hidden: the mean of the data in their place (Vincent et al.
   /// 2008).
   double inputDropout = 0.0;
+  /// Share of the windows of a step in which a control that may be left out is, each on its own.
+  double controlDropout = 0.25;
   ScheduledSampling scheduledSampling;
   double ema = 0.0;               ///< decay of the averaged weights; 0: off
   int64_t steps = 100000;         ///< the run's planned end (and that of cosine and linear)

@@ -51,6 +51,7 @@ TrainingData trainingDataOf(const DataSet& data, const TrainingConfig& config,
                    .noise = TrainingNoise(net, data.standardiser, floorScales(channels), device),
                    .pace = trainingPace(train, fps),
                    .yardstick = nullptr};
+  out.train.hideControl(data.options.features, config.controlDropout);
   if (!out.noise.none())
     out.yardstick = std::make_shared<const LinearGaussian>(
         fitLinearGaussian(train, std::min(kYardstickOrder, context), out.noise.observation().floorM,

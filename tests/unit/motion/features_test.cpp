@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kFps = 20.0;
-constexpr FeatureSpec kUnfiltered{.fps = kFps, .rootSigmaS = 0.0, .facingSigmaS = 0.0};
+const FeatureSpec kUnfiltered{.fps = kFps, .rootSigmaS = 0.0, .facingSigmaS = 0.0};
 
 Clip turningWalk(int frames = 121) {
   std::vector<RootFrame> path;

@@ -139,6 +139,21 @@ TEST(Path, ATableIsAPathWhoseColumnsAreNamed) {
   }
 }
 
+/// Two stretches of a metre at a metre a second, and one at half of that.
+TEST(Path, TypesHoldFromTheirWayPointOn) {
+  const auto points = readPathFile(
+      temporaryFile("types.csv", "x,z,speed,type\n0,0,1,walk\n0,1,,\n0,2,0.5,run\n0,3,,jump\n"));
+  const auto labels = pathLabels(points, "types.csv");
+  ASSERT_EQ(labels.size(), 2u);
+  EXPECT_EQ(labels[0], (LabelSpan{0.0, labels[1].fromS, "walk"}));
+  EXPECT_NEAR(labels[1].fromS, 2.0, 1e-9);
+  EXPECT_EQ(labels[1].label, "run");
+  EXPECT_TRUE(std::isinf(labels[1].toS));
+  EXPECT_NE(pathRemarks(points).front().find("'jump'"), std::string::npos);
+  const auto again = wayPointsFromJson(toJson(points), "again");
+  EXPECT_EQ(again, points);
+}
+
 TEST(Path, WhatIsNoPathSaysWhatOneIs) {
   const std::pair<const char*, const char*> wrong[] = {{"hello", "waypoints"},
                                                        {"[[0, 0], [1, 1]]", "waypoints"},

@@ -1,8 +1,8 @@
-#include "experiment/steering.h"
+#include "task/steering.h"
 
 #include <algorithm>
 
-#include "experiment/parts.h"
+#include "base/json_lists.h"
 
 namespace marey {
 namespace {
@@ -11,17 +11,20 @@ namespace {
 constexpr int kMostFrames = 3600000;
 
 Json toJson(const LiveCommand& c) {
-  return {{"forward_m_s", c.forwardMS},
-          {"sideways_m_s", c.sidewaysMS},
-          {"turn_rad_s", c.turnRadS},
-          {"facing_rad", c.facingRad}};
+  Json out = {{"forward_m_s", c.forwardMS},
+              {"sideways_m_s", c.sidewaysMS},
+              {"turn_rad_s", c.turnRadS},
+              {"facing_rad", c.facingRad}};
+  if (!c.type.empty()) out["type"] = c.type;
+  return out;
 }
 
 LiveCommand commandFrom(JsonReader& reader) {
   return {.forwardMS = reader.required<double>("forward_m_s"),
           .sidewaysMS = reader.required<double>("sideways_m_s"),
           .turnRadS = reader.required<double>("turn_rad_s"),
-          .facingRad = reader.required<double>("facing_rad")};
+          .facingRad = reader.required<double>("facing_rad"),
+          .type = reader.optional<std::string>("type", "")};
 }
 
 struct Run {
@@ -51,12 +54,14 @@ Json toJson(const Steering& s) {
     i += static_cast<size_t>(end - begin);
   }
   const RootFrame& start = s.options.start;
-  return {{"warm_up_s", s.options.warmUpS},
-          {"smoothing_s", s.options.smoothingS},
-          {"sample", s.options.sample},
-          {"begin", toJson(s.options.begin)},
-          {"start", {{"x", start.x}, {"z", start.z}, {"heading_rad", start.heading}}},
-          {"commands", commands}};
+  Json out = {{"warm_up_s", s.options.warmUpS},
+              {"smoothing_s", s.options.smoothingS},
+              {"sample", s.options.sample},
+              {"begin", toJson(s.options.begin)},
+              {"start", {{"x", start.x}, {"z", start.z}, {"heading_rad", start.heading}}},
+              {"commands", commands}};
+  if (!s.options.leftOut.empty()) out["left_out"] = s.options.leftOut;
+  return out;
 }
 
 Steering steeringFromJson(const Json& value, const std::string& origin, const std::string& prefix) {
@@ -65,6 +70,7 @@ Steering steeringFromJson(const Json& value, const std::string& origin, const st
   out.options.warmUpS = reader.required<double>("warm_up_s");
   out.options.smoothingS = reader.required<double>("smoothing_s");
   out.options.sample = reader.required<int>("sample");
+  out.options.leftOut = reader.optional("left_out", out.options.leftOut);
   JsonReader begin(reader.raw("begin"), origin, prefix + "begin.");
   out.options.begin = commandFrom(begin);
   begin.finish();

@@ -4,7 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "experiment/steering.h"
+#include "task/steering.h"
+
 #include "model/motion_model.h"
 #include "motion/path.h"
 
@@ -15,7 +16,8 @@ namespace marey {
 /// model looks ahead, it is told that the velocity stays as it is. Not thread-safe.
 class LiveRollout {
  public:
-  /// Throws InputError for a model without a skeleton or of another control than a path.
+  /// Throws InputError for a model without a skeleton, or with a signal as control that may not be
+  /// left out; as do commands without a type where the model needs one, or of an unknown one.
   LiveRollout(std::shared_ptr<const MotionModel> model, const LiveOptions& options);
 
   /// World positions of the next frame's joints, metres. The first frame stands at
@@ -37,12 +39,14 @@ class LiveRollout {
 
  private:
   void step();
+  Matrix controlRow() const;
   LiveCommand inBodyFrame(double facingBefore) const;
 
   std::shared_ptr<const MotionModel> m_model;
   LiveOptions m_options;
   LiveCommand m_velocity;               ///< smoothed, along the way
   LiveCommand m_bodyVelocity;           ///< the same as the body makes it
+  std::vector<LabelSpan> m_labels;      ///< types so far, from the first frame
   std::vector<LiveCommand> m_commands;  ///< of all frames
   RolloutState m_state;
   Matrix m_window;  ///< [1, (context + 1 + lookahead) * C]

@@ -1,6 +1,7 @@
-#include "experiment/live_rollout.h"
+#include "task/live_rollout.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "model/sampler.h"
@@ -9,10 +10,18 @@ namespace marey {
 namespace {
 
 /// Displacements and turn of one frame.
-Eigen::RowVector3f controlOf(const LiveCommand& velocity, double fps) {
+Eigen::RowVector3f rootMotionOf(const LiveCommand& velocity, double fps) {
   return {static_cast<float>(velocity.sidewaysMS / fps),
           static_cast<float>(velocity.forwardMS / fps),
           static_cast<float>(velocity.turnRadS / fps)};
+}
+
+/// A type holds from `timeS` on; an empty one ends the last.
+void setType(const std::string& type, std::vector<LabelSpan>& labels, double timeS) {
+  const bool open = !labels.empty() && std::isinf(labels.back().toS);
+  if (open ? labels.back().label == type : type.empty()) return;
+  if (open) labels.back().toS = timeS;
+  if (!type.empty()) labels.push_back({.fromS = timeS, .label = type});
 }
 
 void approach(double& value, double wanted, double share) {
@@ -30,15 +39,36 @@ LiveRollout::LiveRollout(std::shared_ptr<const MotionModel> model, const LiveOpt
   const ModelInfo& info = m_model->info();
   if (!info.skeleton)
     throw InputError({.path = info.variant}, "a model with a skeleton", "one imported without it");
-  if (info.controlDim != 3)
-    throwInput({.path = info.variant}, "a model that is controlled by a path (3 values per frame)",
-               "{} control values", info.controlDim);
+  if (!info.knowsControl())
+    throwInput({.path = info.variant},
+               fmt::format("a model of {} control values per frame ({})",
+                           info.features.controlWidth(), summaryOf(info.features.control)),
+               "{}", info.controlDim);
   const int rows = info.context + 1 + info.lookahead;
   m_bodyVelocity = inBodyFrame(m_velocity.facingRad);
-  m_window = controlOf(m_bodyVelocity, info.features.fps).replicate(1, rows);
+  setType(options.begin.type, m_labels, -std::numeric_limits<double>::infinity());
+  m_window = controlRow().replicate(1, rows);
   m_state = requireRollout(*m_model).start(1, {});
   const auto warmUp = static_cast<int>(std::lround(options.warmUpS * info.features.fps));
   for (int t = 0; t < warmUp; ++t) step();
+}
+
+/// The control of the next frame; beyond it the body goes on as it does.
+Matrix LiveRollout::controlRow() const {
+  const FeatureSpec& f = m_model->info().features;
+  Matrix out(1, f.controlWidth());
+  const Eigen::RowVector3f motion = rootMotionOf(m_bodyVelocity, f.fps);
+  if (!isRootMotionAlone(f.control)) {
+    SampleRequest request;
+    request.path = trajectoryFromControl(motion.replicate(2, 1), {});
+    request.control.annotations.labels = m_labels;
+    request.control.annotations =
+        startingAt(std::move(request.control.annotations), m_frames / f.fps);
+    request.control.leftOut = {m_options.leftOut.begin(), m_options.leftOut.end()};
+    out = controlOf(m_model->info(), request).row(0);
+  }
+  out.leftCols(3) = motion;
+  return out;
 }
 
 /// Draws the next pose under the present velocity.
@@ -48,8 +78,7 @@ void LiveRollout::step() {
   const long kept = static_cast<long>(info.context) * wide;
   const Matrix past = m_window.middleCols(wide, kept);
   m_window.leftCols(kept) = past;
-  m_window.rightCols(m_window.cols() - kept) =
-      controlOf(m_bodyVelocity, info.features.fps).replicate(1, 1 + info.lookahead);
+  m_window.rightCols(m_window.cols() - kept) = controlRow().replicate(1, 1 + info.lookahead);
   Matrix latent(1, info.latent.width);
   const bool perClip = info.latent.per == LatentSpec::Per::Clip;
   drawLatent(m_options.seed, m_options.sample, perClip ? 0 : m_generated, m_options.temperature,
@@ -87,8 +116,9 @@ std::vector<Vec3> LiveRollout::advance(const LiveCommand& command) {
   if (m_frames > 0) approach(m_velocity.facingRad, command.facingRad, share);
   m_bodyVelocity = inBodyFrame(facingBefore);
   m_commands.push_back(command);
+  setType(command.type, m_labels, m_frames / fps);
+  const Matrix control = controlRow();
   step();
-  const Eigen::RowVector3f control = controlOf(m_bodyVelocity, fps);
   if (m_frames > 0) m_root = trajectoryFromControl(control.replicate(2, 1), m_root).back();
   m_poses.insert(m_poses.end(), m_pose.data(), m_pose.data() + m_pose.size());
   m_controls.insert(m_controls.end(), control.data(), control.data() + control.size());

@@ -16,6 +16,7 @@ struct LiveCommand {
   double sidewaysMS = 0.0;  ///< positive: to the left of the way
   double turnRadS = 0.0;    ///< of the way and the body; positive: to the left
   double facingRad = 0.0;   ///< of the body from the way ahead; positive: to the left
+  std::string type = {};    ///< label of the motion; empty: none is asked for
   bool operator==(const LiveCommand&) const = default;
 };
 
@@ -27,6 +28,7 @@ struct LiveOptions {
   double smoothingS = 0.3;  ///< time constant with which the velocity follows the command; 0: none
   LiveCommand begin = {};   ///< velocity at the start
   RootFrame start = {};
+  std::vector<std::string> leftOut = {};  ///< channels of control that are left out
 };
 
 /// All that a steered motion was made by, besides its model: the same frames come of it again.

@@ -1,6 +1,7 @@
 #include "experiment/edits.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/error.h"
 
@@ -115,19 +116,43 @@ void setPathSeconds(Experiment& experiment, size_t index, double seconds) {
   experiment.paths.at(index).seconds = whole ? 0.0 : std::max(kShortestPathS, seconds);
 }
 
+std::vector<std::string> motionTypes(
+    const Experiment& experiment, const std::vector<std::shared_ptr<const MotionModel>>& models) {
+  std::set<std::string> out;
+  for (const auto& model : models)
+    if (const auto* channel = channelOf(model->info().features.control, ControlKind::Label))
+      out.insert(channel->values.begin(), channel->values.end());
+  for (const ExperimentPath& path : experiment.paths) {
+    out.insert(path.control.type);
+    for (const WayPoint& point : path.wayPoints) out.insert(point.type);
+  }
+  out.erase("");
+  return {out.begin(), out.end()};
+}
+
+namespace {
+
+void move(ExperimentPath& path, const fs::path& from, const fs::path& to) {
+  path.path = moved(path.path, from, to);
+  for (auto& [channel, file] : path.control.signals) file = moved(file, from, to);
+  if (!path.control.body.empty()) path.control.body = moved(path.control.body, from, to);
+}
+
+}  // namespace
+
 void moveToFolder(Experiment& experiment, const fs::path& folder) {
   const fs::path from = experiment.folder;
   for (std::string& source : experiment.natural) source = moved(source, from, folder);
   for (ExperimentSystem& system : experiment.systems)
     system.model = moved(system.model, from, folder);
-  for (ExperimentPath& path : experiment.paths) path.path = moved(path.path, from, folder);
+  for (ExperimentPath& path : experiment.paths) move(path, from, folder);
   ViewState& view = experiment.view;
   if (view.natural)
     for (ShownClips& shown : *view.natural) shown.source = moved(shown.source, from, folder);
   for (KeptSet& set : view.sets) {
     set.system.model = moved(set.system.model, from, folder);
     // The path of held-out control is a word, no file.
-    if (!set.heldOut) set.path.path = moved(set.path.path, from, folder);
+    if (!set.heldOut) move(set.path, from, folder);
   }
   view.trainingRun = moved(view.trainingRun, from, folder);
   experiment.folder = folder;

@@ -2,10 +2,12 @@
 // commits the result.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "experiment/document.h"
+#include "model/motion_model.h"
 
 namespace marey {
 
@@ -28,6 +30,9 @@ void removeNatural(Experiment& experiment, const std::string& source);
 /// Sets how long a path is followed; what rounds to 0 means as long as it takes, other values are
 /// raised to the shortest one that a document may hold.
 void setPathSeconds(Experiment& experiment, size_t index, double seconds);
+/// The types of motion that models know and the document's paths name, sorted.
+std::vector<std::string> motionTypes(const Experiment& experiment,
+                                     const std::vector<std::shared_ptr<const MotionModel>>& models);
 /// Makes the file names of the document fit `folder`, so that a document saved there finds its
 /// files: relative ones where they lie in it or below, which then move along with it, else whole.
 void moveToFolder(Experiment& experiment, const std::filesystem::path& folder);

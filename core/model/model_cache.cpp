@@ -34,6 +34,13 @@ std::shared_ptr<const MotionModel> ModelCache::model(const std::string& file) {
   return m_entries.front().model;
 }
 
+std::vector<std::shared_ptr<const MotionModel>> ModelCache::held() {
+  const std::lock_guard lock(m_mutex);
+  std::vector<std::shared_ptr<const MotionModel>> out;
+  for (const Entry& entry : m_entries) out.push_back(entry.model);
+  return out;
+}
+
 void requireRate(const MotionModel& model, const std::string& file, double fps) {
   if (std::abs(model.info().features.fps - fps) > 1e-6)
     throwInput({.path = file}, fmt::format("a model at the document's {} fps", fps), "{}",

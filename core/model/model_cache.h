@@ -18,6 +18,8 @@ class ModelCache {
   explicit ModelCache(std::span<const ModelFamily> families) : m_families(families) {}
   /// The model of a file as it is now. Throws FileError or InputError.
   std::shared_ptr<const MotionModel> model(const std::string& file);
+  /// Those that it holds now.
+  std::vector<std::shared_ptr<const MotionModel>> held();
   /// Differs for other files, and for a file that was written anew.
   static std::string stampOf(const std::string& file);
 

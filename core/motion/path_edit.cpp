@@ -114,6 +114,10 @@ void PathEdit::setFacing(size_t index, std::optional<double> radians) {
   m_points.at(index).facing = radians;
 }
 
+void PathEdit::setType(size_t index, const std::string& type) {
+  m_points.at(index).type = type;
+}
+
 void PathEdit::face(size_t index, double x, double z) {
   const WayPoint& point = m_points.at(index);
   if (x == point.x && z == point.z) return;

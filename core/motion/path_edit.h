@@ -38,6 +38,8 @@ class PathEdit {
   void setFacing(size_t index, std::optional<double> radians);
   /// Faces a place on the floor; nothing changes where that is the way-point itself.
   void face(size_t index, double x, double z);
+  /// Type of the motion from here on; empty: as before it.
+  void setType(size_t index, const std::string& type);
   /// When to be there, kept between the times of its neighbours; none: by speed.
   void setTime(size_t index, std::optional<double> timeS);
 

@@ -5,6 +5,7 @@
 #include "task/task_list.h"
 
 #include "base/error.h"
+#include "base/random.h"
 #include "model/pose_units.h"
 
 namespace marey {
@@ -26,6 +27,22 @@ Matrix knownValues(const Matrix& joints, const FeatureSequence& features, const 
   Matrix out(joints.rows(), features.pose.cols());
   for (size_t i = 0; i < channels.size(); ++i)
     out.col(static_cast<long>(i)) = joints.col(channels[i].joint);
+  return out;
+}
+
+/// The mask that is given, or one that hides joints at random.
+Matrix maskOf(const TaskRequest& r, const FeatureSequence& features, const ModelInfo& info) {
+  if (r.knownJoints.size() > 0) return r.knownJoints;
+  if (!(r.missing > 0.0) || r.missing > 1.0)
+    throwInput({.path = features.name, .item = "mask"},
+               "a mask, or a share of missing joints above 0 and up to 1", "{}", r.missing);
+  Matrix out(features.frameCount(), info.skeleton->jointCount());
+  for (long t = 0; t < out.rows(); ++t) {
+    const RandomKey key{
+        .seed = r.seed, .frame = static_cast<uint32_t>(t), .stage = RandomStage::Observation};
+    for (long j = 0; j < out.cols(); ++j)
+      out(t, j) = uniformAt(key, static_cast<uint32_t>(j)) < r.missing ? 0.F : 1.F;
+  }
   return out;
 }
 
@@ -55,7 +72,7 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
   FeatureSequence features = featuresOf(info, *r.clip);
   features.name = path;
   CompletionRequest request{.poses = features.pose,
-                            .known = knownValues(r.knownJoints, features, info),
+                            .known = knownValues(maskOf(r, features, info), features, info),
                             .controls = {},
                             .latents = {}};
   TaskOutcome out{.motions = completions(model, features, request, r, progress),
@@ -69,18 +86,22 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
 }  // namespace
 
 Task completeTask() {
-  return {.name = "complete",
-          .title = "fill in joints and frames that are missing",
-          .done = "completed",
-          .without = "the last known value held",
-          .example = "walk.bvh --mask known.csv --out completed",
-          .options = {{.name = "mask",
-                       .help = "Which joints are known: CSV or NPY, a row for each frame at the "
-                               "model's rate, a column for each joint; 1: known, 0: missing",
-                       .table = [](TaskRequest& r,
-                                   Matrix table) { r.knownJoints = std::move(table); }}},
-          .whyNot = whyNot,
-          .run = run};
+  return {
+      .name = "complete",
+      .title = "fill in joints and frames that are missing",
+      .done = "completed",
+      .without = "the last known value held",
+      .example = "walk.bvh --mask known.csv --out completed",
+      .options = {{.name = "mask",
+                   .help = "Which joints are known: CSV or NPY, a row for each frame at the "
+                           "model's rate, a column for each joint; 1: known, 0: missing",
+                   .table = [](TaskRequest& r, Matrix table) { r.knownJoints = std::move(table); }},
+                  {.name = "missing",
+                   .help = "Without a mask: share of the joints of every frame that is hidden at "
+                           "random, from 0 to 1",
+                   .number = [](TaskRequest& r, double value) { r.missing = value; }}},
+      .whyNot = whyNot,
+      .run = run};
 }
 
 }  // namespace marey

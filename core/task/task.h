@@ -32,6 +32,8 @@ struct TaskRequest {
   double seconds = 0.0;  ///< predict along the clip's own control: at most so long; 0: all of it
   /// complete: [frames at the model's rate, joints], 1 where a joint is known, else 0.
   Matrix knownJoints;
+  /// complete, without knownJoints: share of the joints of every frame that is hidden at random.
+  double missing = 0.0;
   double noiseM = 0.0;  ///< denoise: deviation of the noise that is added to the clip first, metres
   double levelM = 0.0;  ///< denoise: deviation of the noise that is taken out; 0: noiseM
   std::optional<Steering> steering;  ///< steer; its seed and temperature are those above

@@ -31,6 +31,8 @@ class CurrentPath : public QObject {
   const std::vector<RootFrame>& frames() const { return m_frames; }
   /// Where a way-point faces, radians: by its own choice, or as the path has it there.
   double headingAt(size_t wayPoint) const;
+  /// The types that way-points may name.
+  std::vector<std::string> motionTypes() const { return m_workspace.motionTypes(); }
   /// The frame of curve() at which a way-point is reached.
   size_t frameAt(size_t wayPoint) const;
   /// Why the path cannot be used as it is; empty where all is well.

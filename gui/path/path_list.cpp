@@ -66,6 +66,15 @@ void PathList::build() {
     m_workspace.edit(tr("Length of path"), [&](Experiment& e) { setPathSeconds(e, index, value); });
     refresh();  // too short a length shows as it is now
   });
+  m_type =
+      new TypeBox("pathType", tr("Type of motion for all of the path, for models that know types"),
+                  tr("as the path has it"), this);
+  connect(m_type, &TypeBox::typeChosen, this, [this](const std::string& type) {
+    if (!m_path.path()) return;
+    const auto index = static_cast<size_t>(m_workspace.currentPath());
+    m_workspace.edit(tr("Type of path"),
+                     [&](Experiment& e) { e.paths.at(index).control.type = type; });
+  });
   m_makeDrawn = new QPushButton(tr("Make editable"), this);
   m_makeDrawn->setObjectName(QStringLiteral("pathMakeEditable"));
   m_makeDrawn->setToolTip(tr("Turn this preset, clip or file into way-points, one per second"));
@@ -78,6 +87,8 @@ void PathList::build() {
   grid->addWidget(seconds, 1, 0);
   grid->addWidget(m_seconds, 1, 1);
   grid->addWidget(m_makeDrawn, 1, 2, 1, 3, Qt::AlignRight);
+  grid->addWidget(new QLabel(tr("Type"), this), 2, 0);
+  grid->addWidget(m_type, 2, 1, 1, 2);
   grid->setColumnStretch(2, 1);
 }
 
@@ -137,6 +148,8 @@ void PathList::refresh() {
   const bool preset = path && !m_path.drawn() && path->path.starts_with("preset:");
   m_seconds->setSpecialValueText(preset ? tr("usual") : tr("whole path"));
   m_seconds->display(path ? path->seconds : 0.0);
+  m_type->setEnabled(path != nullptr);
+  m_type->display(m_workspace.motionTypes(), path ? path->control.type : std::string());
   m_makeDrawn->setVisible(path && !m_path.drawn());
   m_makeDrawn->setEnabled(m_path.points().size() > 1);
   m_filling = false;

@@ -9,6 +9,7 @@
 #include <QWidget>
 
 #include "gui/common/number_box.h"
+#include "gui/common/type_box.h"
 #include "gui/path/current_path.h"
 
 namespace marey::gui {
@@ -42,6 +43,7 @@ class PathList : public QWidget {
   QToolButton *m_add = nullptr, *m_more = nullptr;
   QPushButton* m_makeDrawn = nullptr;
   NumberBox* m_seconds = nullptr;
+  TypeBox* m_type = nullptr;
   QAction *m_rename = nullptr, *m_copy = nullptr, *m_remove = nullptr, *m_take = nullptr,
           *m_export = nullptr;
   bool m_filling = false;

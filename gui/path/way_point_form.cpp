@@ -81,6 +81,11 @@ void WayPointForm::build() {
   m_time = number("wayPointTime", tr(" s"), 0.0, 3600.0, 0.1, tr("When to be there"));
   row(4, m_ownTime, "wayPointOwnTime", tr("Time"), tr("Be there at a fixed time"), m_time,
       tr("else by speed"));
+  m_type =
+      new TypeBox("wayPointType", tr("Type of motion on leaving it, for models that know types"),
+                  tr("as before it"), this);
+  grid->addWidget(new QLabel(tr("Type"), this), 5, 0);
+  grid->addWidget(m_type, 5, 1, 1, 3);
   grid->setColumnStretch(3, 1);
 }
 
@@ -125,6 +130,9 @@ void WayPointForm::connectEdits() {
     edit(tr("Time of way-point"),
          [this, value](PathEdit& e, size_t i) { e.setTime(i, value(m_ownTime, m_time, 1.0)); });
   });
+  connect(m_type, &TypeBox::typeChosen, this, [this](const std::string& type) {
+    edit(tr("Type at way-point"), [type](PathEdit& e, size_t i) { e.setType(i, type); });
+  });
 }
 
 void WayPointForm::refresh() {
@@ -137,7 +145,7 @@ void WayPointForm::refresh() {
   m_count->setText(tr("of %1").arg(points.size()));
   m_remove->setEnabled(shown && points.size() > 2);
   for (QWidget* widget :
-       std::initializer_list<QWidget*>{m_x, m_z, m_ownSpeed, m_ownFacing, m_ownTime})
+       std::initializer_list<QWidget*>{m_x, m_z, m_ownSpeed, m_ownFacing, m_ownTime, m_type})
     widget->setEnabled(shown);
   const WayPoint point = shown ? points[*chosen] : WayPoint{};
   m_x->display(point.x);
@@ -145,6 +153,7 @@ void WayPointForm::refresh() {
   m_ownSpeed->setChecked(point.speedMS.has_value());
   m_ownFacing->setChecked(point.facing.has_value());
   m_ownTime->setChecked(point.timeS.has_value());
+  m_type->display(m_path.motionTypes(), point.type);
   m_speed->setEnabled(point.speedMS.has_value());
   m_facing->setEnabled(point.facing.has_value());
   m_time->setEnabled(point.timeS.has_value());

@@ -9,6 +9,7 @@
 #include <QWidget>
 
 #include "gui/common/number_box.h"
+#include "gui/common/type_box.h"
 #include "gui/path/current_path.h"
 #include "gui/path/path_view.h"
 
@@ -35,6 +36,7 @@ class WayPointForm : public QWidget {
   NumberBox *m_x = nullptr, *m_z = nullptr, *m_speed = nullptr, *m_facing = nullptr,
             *m_time = nullptr;
   QCheckBox *m_ownSpeed = nullptr, *m_ownFacing = nullptr, *m_ownTime = nullptr;
+  TypeBox* m_type = nullptr;
   QPushButton* m_remove = nullptr;
   bool m_filling = false;
 };

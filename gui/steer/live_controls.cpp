@@ -41,8 +41,21 @@ LiveControls::LiveControls(QWidget* parent) : QWidget(parent) {
   form->addRow(tr("Sideways"), m_sideways);
   form->addRow(tr("Turn"), m_turn);
   form->addRow(tr("Facing"), m_facing);
+  m_type = new TypeBox("liveType", tr("Type of motion; keys 1 to 9 choose while steering"),
+                       tr("the model's first"), this);
+  form->addRow(tr("Type"), m_type);
+  m_typeLabel = form->labelForField(m_type);
+  connect(m_type, &TypeBox::typeChosen, this, [this] { Q_EMIT changed(); });
   layout->addLayout(form);
   addPad();
+  setTypes({});
+}
+
+void LiveControls::setTypes(std::vector<std::string> types) {
+  m_types = std::move(types);
+  m_type->display(m_types, m_type->chosen());
+  m_type->setVisible(!m_types.empty());
+  m_typeLabel->setVisible(!m_types.empty());
 }
 
 QDoubleSpinBox* LiveControls::number(const char* name, double value, double low, double high,
@@ -103,6 +116,7 @@ LiveCommand LiveControls::command() const {
   LiveCommand out;
   out.forwardMS = (held(Qt::Key_Up) - held(Qt::Key_Down)) * m_speed->value();
   out.facingRad = m_facing->value() * kRadians;
+  out.type = m_type->chosen();
   if (m_control)
     out.facingRad += left * kLookAside;
   else if (m_shift)
@@ -135,6 +149,15 @@ void LiveControls::releaseAll() {
   Q_EMIT changed();
 }
 
+/// Keys 1 to 9.
+bool LiveControls::chooseType(int key) {
+  const int index = key - Qt::Key_1;
+  if (index < 0 || index > 8 || index >= static_cast<int>(m_types.size())) return false;
+  m_type->display(m_types, m_types[static_cast<size_t>(index)]);
+  Q_EMIT changed();
+  return true;
+}
+
 void LiveControls::take(const QKeyEvent& event, bool down) {
   if (event.isAutoRepeat()) return;
   if (steers(event.key()))
@@ -158,6 +181,7 @@ bool LiveControls::eventFilter(QObject* object, QEvent* event) {
   const auto* widget = qobject_cast<QWidget*>(object);
   if ((!press && !release && !shortcut) || widget == nullptr) return false;
   const auto& key = *static_cast<QKeyEvent*>(event);
+  if (press && !edits(widget) && chooseType(key.key())) return true;
   const bool modifier = key.key() == Qt::Key_Shift || key.key() == Qt::Key_Control;
   if ((!steers(key.key()) && !modifier) || (press && edits(widget))) return false;
   if (shortcut) {

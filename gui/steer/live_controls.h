@@ -5,7 +5,10 @@
 #include <QKeyEvent>
 #include <QWidget>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "gui/common/type_box.h"
 #include "task/live_rollout.h"
 
 namespace marey::gui {
@@ -22,6 +25,8 @@ class LiveControls : public QWidget {
   /// Arrow keys steer while a session runs, wherever the focus is but where they edit something.
   void setSteering(bool steering);
   void releaseAll();
+  /// The types that there are to choose from: shown where there are any, keys 1 to 9 choose.
+  void setTypes(std::vector<std::string> types);
 
  Q_SIGNALS:
   void changed();
@@ -34,8 +39,12 @@ class LiveControls : public QWidget {
                          const QString& unit);
   void addPad();
   void take(const QKeyEvent& event, bool down);
+  bool chooseType(int key);
 
   QDoubleSpinBox *m_speed = nullptr, *m_sideways = nullptr, *m_turn = nullptr, *m_facing = nullptr;
+  TypeBox* m_type = nullptr;
+  QWidget* m_typeLabel = nullptr;
+  std::vector<std::string> m_types;
   std::set<int> m_keys;  ///< held down
   bool m_shift = false, m_control = false, m_steering = false;
 };

@@ -122,6 +122,8 @@ class LivePanel : public QWidget {
       m_systems.push_back(e.systems[i]);
     }
     m_seed = e.seed;
+    m_typesShown = false;
+    m_controls->setTypes({});
     m_clips.assign(models.size(), {});
     m_frameMs.assign(models.size(), {});
     m_latencies.clear();
@@ -180,6 +182,8 @@ class LivePanel : public QWidget {
       return;
     }
     if (!m_clips.empty() && !m_clips.front().positions.empty()) showFigures();
+    if (!news.types.empty() && !m_typesShown) m_controls->setTypes(news.types);
+    m_typesShown = !news.types.empty();
     if (news.commandAt) {
       m_view->repaint();  // now: the time until the picture stands is what is measured
       remember(
@@ -343,6 +347,7 @@ class LivePanel : public QWidget {
   StickView* m_view = nullptr;
   QComboBox* m_models = nullptr;
   LiveControls* m_controls = nullptr;
+  bool m_typesShown = false;  ///< those of the models that run
   QCheckBox* m_inScene = nullptr;
   QPushButton* m_start = nullptr;
   QPushButton* m_keep = nullptr;

@@ -169,6 +169,10 @@ void Workspace::setCurrentPath(int index) {
   Q_EMIT currentPathChanged();
 }
 
+std::vector<std::string> Workspace::motionTypes() const {
+  return marey::motionTypes(experiment(), m_models->held());
+}
+
 std::string Workspace::modelFile(const ExperimentSystem& system) const {
   return (experiment().folder / system.model).string();
 }

@@ -129,6 +129,8 @@ class Workspace : public QObject {
     return m_models->model(file);
   }
   std::string modelFile(const ExperimentSystem& system) const;
+  /// The types of motion that models which are open know, and the paths of the document name.
+  std::vector<std::string> motionTypes() const;
   JobQueue& jobs() { return m_jobs; }
 
   // Selection and time.

@@ -34,6 +34,7 @@ inline Json pathKinds() {
   return {{{"name", "drawn"}, {"waypoints", points}, {"seconds", 0.0}},
           {{"name", "asked"},
            {"path", "preset:slow"},
+           {"seconds", 10.0},
            {"type", "walk"},
            {"signals", {{"speech", "speech.npy"}}},
            {"left_out", {"music"}},

@@ -1,8 +1,10 @@
 // What keys do: numbers that are typed, commands while something is typed, Space and the focus.
 #include <QAction>
+#include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QLineEdit>
 #include <QPushButton>
+#include <QSpinBox>
 #include <QTest>
 #include <QToolButton>
 #include <cmath>
@@ -42,6 +44,26 @@ class Typing : public DemoTest {
     settle(50);
   }
 };
+
+TEST_F(Typing, ATypeOfMotionIsTypedForAPathAndForAStretchOfIt) {
+  QWidget* panel = m_window->showPanel("path");
+  auto* whole = child<QComboBox>(*panel, "pathType");
+  type(whole->lineEdit(), "walk");
+  QTest::keyClick(whole->lineEdit(), Qt::Key_Return);
+  const auto path = [this] { return m_workspace->experiment().paths.at(0); };
+  EXPECT_EQ(path().control.type, "walk");
+  m_workspace->undo();
+  EXPECT_EQ(path().control.type, "");
+  EXPECT_EQ(whole->currentText(), "");
+  child<QSpinBox>(*panel, "wayPointIndex")->setValue(1);
+  auto* stretch = child<QComboBox>(*panel, "wayPointType");
+  ASSERT_TRUE(stretch->isEnabled());
+  type(stretch->lineEdit(), "run");
+  QTest::keyClick(stretch->lineEdit(), Qt::Key_Return);
+  ASSERT_FALSE(path().wayPoints.empty());
+  EXPECT_EQ(path().wayPoints[0].type, "run");
+  EXPECT_GE(whole->findText("run"), 0) << "a type that is used is offered";
+}
 
 TEST_F(Typing, ATemperatureIsWhatWasTypedAtTheEnd) {
   for (const int pause : {0, 60}) {

@@ -4,6 +4,7 @@
 
 #include "../unit/base/support.h"
 #include "law_models.h"
+#include "task/live_rollout.h"
 
 #include "base/error.h"
 #include "model/sampler.h"
@@ -108,6 +109,32 @@ TEST_P(ControlLaws, AClipIsFollowedAndScoredWithItsOwn) {
       controlOf(model->info(), along).isApprox(featuresOf(model->info(), clip).control, 1e-4F));
   const auto score = scoreClips(*model, {&clip, 1}, false, progress).front();
   EXPECT_EQ(std::isfinite(score.meanNatsPerFrame()), model->density() != nullptr);
+}
+
+/// Steering along a straight way asks for what a path asks for, also where the type changes.
+TEST_P(ControlLaws, SteeringIsTheSameControl) {
+  const auto owned = made();
+  if (!owned || !owned->rollout()) return;
+  const std::shared_ptr<const MotionModel> model(std::shared_ptr<const MotionModel>(), owned.get());
+  const auto& types = model->info().features.control[2].values;
+  SampleRequest request = asked(types[0]);
+  request.samples = 1;
+  request.control.leftOut = {"beat"};
+  request.control.annotations.labels = {{0.0, 0.5, types[0]}, {.fromS = 0.5, .label = types[1]}};
+  request.path.clear();
+  for (int t = 0; t < 20; ++t) request.path.push_back({0.0, 0.05 * t, 0.0});
+  const LiveCommand before{.forwardMS = 1.0, .type = types[0]};
+  LiveOptions options{.seed = 3, .warmUpS = 0.5, .smoothingS = 0.0, .begin = before};
+  options.leftOut = {"beat"};
+  LiveRollout rollout(model, options);
+  for (int t = 0; t < 20; ++t) {
+    LiveCommand command = before;
+    if (t >= 10) command.type = types[1];
+    rollout.advance(command);
+  }
+  const Matrix wanted = controlOf(model->info(), request);
+  EXPECT_TRUE(rollout.sequence().control.isApprox(wanted, 1e-4F));
+  EXPECT_TRUE(rollout.sequence().pose.isApprox(firstOf(*model, request), 1e-3F));
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, ControlLaws, testing::ValuesIn(allSystems()),

@@ -164,6 +164,12 @@ TEST(Complete, KeepsWhatIsKnown) {
   EXPECT_GT(
       (outcome.motions[0].at(7, clip.jointCount() - 1) - clip.at(7, clip.jointCount() - 1)).norm(),
       1e-4F);
+  // Joints hidden at random: better filled in than held.
+  TaskRequest random{.clip = outcome.motions[0], .path = {}, .seed = 4};
+  EXPECT_THROW(runTask(taskNamed("complete"), *model, random, progress), InputError);
+  random.missing = 0.5;
+  const TaskOutcome guessed = runTask(taskNamed("complete"), *model, random, progress);
+  EXPECT_GT(poseError({&*guessed.without, 1}, *guessed.reference).meanCm, 0.0);
   TaskRequest odd = request;
   odd.knownJoints = Matrix::Ones(3, 2);
   EXPECT_THROW(runTask(taskNamed("complete"), *model, odd, progress), InputError);

@@ -1,6 +1,7 @@
 #include "experiment/steering/live_session.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "base/error.h"
@@ -22,6 +23,18 @@ LiveCommand added(const LiveCommand& keys, const GamepadState& pad, const LiveCo
   return out;
 }
 }  // namespace
+
+LiveCommand obeyed(const ModelInfo& info, LiveCommand command) {
+  const ControlChannel* types = channelOf(info.features.control, ControlKind::Label);
+  if (!types) {
+    command.type.clear();
+    return command;
+  }
+  const auto& known = types->values;
+  if (std::find(known.begin(), known.end(), command.type) == known.end())
+    command.type = types->optional ? std::string() : known.front();
+  return command;
+}
 
 LiveSession::LiveSession(std::vector<LiveModel> models, const LiveOptions& options,
                          std::vector<std::string> gamepads)
@@ -73,7 +86,9 @@ bool LiveSession::prepare(const std::stop_token& stop) {
     if (stop.stop_requested()) return false;
     LiveOptions options = m_options;
     options.temperature = model.temperature;
-    m_rollouts.emplace_back(model.load(), options);
+    const auto loaded = model.load();
+    options.begin = obeyed(loaded->info(), options.begin);
+    m_rollouts.emplace_back(loaded, options);
     const ModelInfo& first = m_rollouts.front().model().info();
     const ModelInfo& info = m_rollouts.back().model().info();
     if (info.features.fps != first.features.fps)
@@ -85,6 +100,12 @@ bool LiveSession::prepare(const std::stop_token& stop) {
   for (const LiveRollout& rollout : m_rollouts)
     m_news.models.push_back(
         {.frames = {}, .frameMs = {}, .skeleton = rollout.model().info().skeleton});
+  std::set<std::string> types;
+  for (const LiveRollout& rollout : m_rollouts)
+    if (const auto* channel =
+            channelOf(rollout.model().info().features.control, ControlKind::Label))
+      types.insert(channel->values.begin(), channel->values.end());
+  m_news.types.assign(types.begin(), types.end());
   m_news.fps = m_rollouts.front().model().info().features.fps;
   return true;
 }
@@ -102,7 +123,7 @@ void LiveSession::advanceAll() {
   std::vector<double> ms;
   for (LiveRollout& rollout : m_rollouts) {
     const auto begin = LiveClock::now();
-    frames.push_back(rollout.advance(command));
+    frames.push_back(rollout.advance(obeyed(rollout.model().info(), command)));
     ms.push_back(std::chrono::duration<double, std::milli>(LiveClock::now() - begin).count());
   }
   const auto now = LiveClock::now();

@@ -11,9 +11,10 @@
 #include <thread>
 #include <vector>
 
+#include "task/live_rollout.h"
+
 #include "experiment/motions.h"
 #include "experiment/steering/gamepad.h"
-#include "task/live_rollout.h"
 
 namespace marey {
 
@@ -36,12 +37,17 @@ struct LiveNews {
   std::vector<LiveModelNews> models;
   /// When the oldest change of the command came that these frames are the first to obey.
   std::optional<LiveClock::time_point> commandAt;
-  double heading = 0.0;   ///< of the first model's root
-  double fps = 0.0;       ///< of all models
-  double madePerS = 0.0;  ///< frames that were really made, over the last second
-  bool gamepad = false;   ///< one is connected
-  std::string error;      ///< why the session has ended by itself
+  double heading = 0.0;            ///< of the first model's root
+  double fps = 0.0;                ///< of all models
+  std::vector<std::string> types;  ///< that a model knows, once they are loaded
+  double madePerS = 0.0;           ///< frames that were really made, over the last second
+  bool gamepad = false;            ///< one is connected
+  std::string error;               ///< why the session has ended by itself
 };
+
+/// The command as a model can obey it: with a type that it knows, which is its first one where the
+/// command names none that it knows and it cannot go without.
+LiveCommand obeyed(const ModelInfo& info, LiveCommand command);
 
 /// All models obey the same command. Frames do not wait for whoever shows them; where the models
 /// are too slow for their rate, time is stretched and no frame is left out.

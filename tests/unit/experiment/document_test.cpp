@@ -175,6 +175,59 @@ TEST(ViewState, SeedsOfTheFuzzerAreDocuments) {
   EXPECT_EQ(document.view.sets[0].leftOut, (std::vector<int>{1, 5}));
 }
 
+/// Types, signals and bodies are kept, their files move with the document, and documents without
+/// keep the hash that they had.
+TEST_F(InFolder, ControlOfPathsIsKeptAndMoves) {
+  Experiment e = twoPaths();
+  const std::string before = experimentHash(e);
+  e.folder = m_folder;
+  e.paths[0].control = {.type = "walk",
+                        .signals = {{"speech", "speech.npy"}},
+                        .leftOut = {"music"},
+                        .body = "tall.bvh"};
+  e.paths[1].wayPoints[1].type = "run";
+  EXPECT_NE(experimentHash(e), before);
+  EXPECT_EQ(experimentFromJson(toJson(e), "again").paths, e.paths);
+  EXPECT_EQ(motionTypes(e, {}), (std::vector<std::string>{"run", "walk"}));
+  moveToFolder(e, m_folder.parent_path());
+  EXPECT_EQ(e.paths[0].control.signals["speech"], (m_folder.filename() / "speech.npy").string());
+  EXPECT_EQ(e.paths[0].control.body, (m_folder.filename() / "tall.bvh").string());
+  for (const char* wrong :
+       {R"({"signals": 3})", R"({"signals": {"a": 1}})", R"({"left_out": 1})"}) {
+    Json json = toJson(e);
+    json["paths"][0].update(Json::parse(wrong));
+    EXPECT_THROW(experimentFromJson(json, "wrong"), InputError) << wrong;
+  }
+}
+
+TEST(Cases, AreKeptWithTheOptionsOfTheirTask) {
+  Experiment e = twoPaths();
+  e.cases = {{.name = "soon",
+              .task = "predict",
+              .options = {{"seed_frames", 20}, {"seconds", 1.5}},
+              .samples = 3}};
+  const Json json = toJson(e);
+  EXPECT_EQ(json["cases"][0]["options"]["seed_frames"], Json(20));
+  EXPECT_EQ(experimentFromJson(json, "again").cases, e.cases);
+  const std::pair<const char*, const char*> wrong[] = {
+      {R"({"task": "follow"})", "predict, complete, denoise"},
+      {R"({"options": {"seed_frames": 2.5}})", "options.seed_frames"},
+      {R"({"options": {"seconds": -1}})", "at least 0"},
+      {R"({"options": {"noise": 1}})", "options.noise"},
+      {R"({"task": "complete", "options": {"mask": 1}})", "options.mask"},
+      {R"({"samples": 0})", "at least 1"}};
+  for (const auto& [change, expected] : wrong) {
+    Json changed = json;
+    changed["cases"][0].update(Json::parse(change));
+    try {
+      experimentFromJson(changed, "wrong");
+      FAIL() << change;
+    } catch (const InputError& fault) {
+      EXPECT_NE(std::string(fault.what()).find(expected), std::string::npos) << fault.what();
+    }
+  }
+}
+
 TEST(LeftOut, IsStoredAndChangesNoOtherDocument) {
   Experiment e = twoPaths();
   EXPECT_FALSE(toJson(e).contains("natural_left_out")) << "every document would get another hash";

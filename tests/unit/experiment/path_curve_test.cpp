@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "experiment/natural_pace.h"
 
 namespace marey {
 namespace {
@@ -60,6 +61,21 @@ TEST(PathCurve, StrainTellsRareFromUnseen) {
   EXPECT_EQ(strains, (std::vector<Strain>{Strain::None, Strain::None, Strain::Rare}));
   EXPECT_EQ(strainsOf(curve, std::nullopt),
             (std::vector<Strain>{Strain::None, Strain::None, Strain::None}));
+}
+
+TEST(NaturalPace, OfTheTrainingDataGoesBeforeThatOfClips) {
+  Progress progress;
+  EXPECT_FALSE(naturalPace({}, {}, progress)) << "there is nothing to measure";
+  const PaceModel none{"no model", MAREY_SOURCE_DIR "/README.md"};
+  EXPECT_FALSE(naturalPace({none}, {}, progress)) << "a file that is no model is passed over";
+  const PaceModel demo{"demo", MAREY_SOURCE_DIR "/resources/demo/demo.marey"};
+  const auto pace = naturalPace({none, demo}, {}, progress);
+  ASSERT_TRUE(pace);
+  EXPECT_EQ(pace->model, "demo");
+  EXPECT_EQ(pace->clips, 0U);
+  // Walkers walk: they stand at least, and do not run.
+  EXPECT_GE(pace->speedMS.minimum, 0.0);
+  EXPECT_LT(pace->speedMS.maximum, 4.0);
 }
 
 }  // namespace

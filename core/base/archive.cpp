@@ -94,10 +94,6 @@ std::map<std::string, std::string> parseArchive(std::string_view bytes, const st
   return out;
 }
 
-std::map<std::string, std::string> readArchive(const std::filesystem::path& path, size_t maxBytes) {
-  return parseArchive(readFile(path), path.string(), maxBytes);
-}
-
 void writeArchive(const std::filesystem::path& path,
                   const std::map<std::string, std::string>& files, bool compress) {
   ZipErrorText error;

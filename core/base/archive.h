@@ -10,9 +10,7 @@ namespace marey {
 
 /// name -> content of every file of the archive. `maxBytes` bounds the unpacked sum, so a
 /// small file cannot claim the memory of the machine.
-/// Throws InputError (no zip, damaged entry, too large) or FileError.
-std::map<std::string, std::string> readArchive(const std::filesystem::path& path,
-                                               size_t maxBytes = size_t{4} << 30);
+/// Throws InputError (no zip, damaged entry, too large).
 std::map<std::string, std::string> parseArchive(std::string_view bytes, const std::string& origin,
                                                 size_t maxBytes = size_t{4} << 30);
 /// Deflated when `compress`; written atomically. Throws FileError.

@@ -52,10 +52,6 @@ void fillNormal(const RandomKey& key, std::span<float> out) {
   }
 }
 
-void fillUniform(const RandomKey& key, std::span<double> out) {
-  for (size_t i = 0; i < out.size(); ++i) out[i] = uniformAt(key, static_cast<uint32_t>(i));
-}
-
 double uniformAt(const RandomKey& key, uint32_t index) {
   return static_cast<double>(block(key, index / 4)[index % 4]) * 0x1p-32;
 }

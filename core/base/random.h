@@ -36,8 +36,6 @@ struct RandomKey {
 
 /// Fills `out` with standard normal values (Box-Muller, double inside).
 void fillNormal(const RandomKey& key, std::span<float> out);
-/// Fills `out` with uniform values in [0, 1).
-void fillUniform(const RandomKey& key, std::span<double> out);
 /// One uniform value in [0, 1): number `index` of the stream.
 double uniformAt(const RandomKey& key, uint32_t index);
 /// One standard normal value: number `index` of the stream.

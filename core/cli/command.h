@@ -75,6 +75,8 @@ void addBenchCommand(CLI::App& app, Context& context);
 void addModelBenchCommands(CLI::App& bench, Context& context);
 void addTrainBenchCommand(CLI::App& bench, Context& context);
 
+/// --option NAME=VALUE, any number of them; "temperature" goes to its own place.
+void addModelOptions(CLI::App& command, double& temperature, OptionValues& options);
 /// --weights: how the engine keeps a model's weights.
 void addWeightsOption(CLI::App& command, std::string& weights);
 WeightPrecision weightPrecisionNamed(const std::string& name);

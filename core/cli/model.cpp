@@ -33,6 +33,10 @@ Json infoJson(const ModelInfo& info) {
               {"parameters", info.parameters},  {"pose_dim", info.poseDim},
               {"control_dim", info.controlDim}, {"context", info.context},
               {"lookahead", info.lookahead},    {"config", info.config}};
+  out["options"] = Json::array();
+  for (const SamplingOption& option : info.optionSchema) out["options"].push_back(toJson(option));
+  out["facts"] = Json::object();
+  for (const auto& [name, value] : factsOf(info)) out["facts"][name] = value;
   if (info.hash.empty()) return out;  // a configuration, no model
   out["standardiser"] = !info.standardiser.empty();
   out["joints"] = info.skeleton ? info.skeleton->names : std::vector<std::string>{};
@@ -68,6 +72,7 @@ void runInfo(const Options& o, const Context& context) {
       "{}\n",
       info.family, info.variant, static_cast<double>(info.parameters) / 1e6, info.poseDim,
       info.controlDim, info.context, info.lookahead);
+  for (const auto& [name, value] : factsOf(info)) text += fmt::format("{}: {}\n", name, value);
   text += info.config.dump(2) + "\n";
   if (!info.hash.empty()) {
     text += info.standardiser.empty()

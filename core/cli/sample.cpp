@@ -26,10 +26,12 @@ struct Options {
   int samples = 1;
   bool resume = false;
   double temperature = 1.0, warmUp = 1.0;
+  OptionValues options;
 };
 
 Json recipe(const Options& o, const MotionModel& model, const Context& context) {
-  Json out = motionRecipe({}, SampleOrigin{model.info().hash, context.seed, o.temperature});
+  Json out =
+      motionRecipe({}, SampleOrigin{model.info().hash, context.seed, o.temperature, o.options});
   out["command"] = context.commandLine;
   out["model"] = model.info().variant;
   out["path"] = o.path.path;
@@ -65,6 +67,7 @@ void run(Options& o, Context& context) {
   request.samples = o.samples;
   request.seed = context.seed;
   request.temperature = o.temperature;
+  request.options = o.options;
   request.warmUpS = o.warmUp;
   SampleFilesRequest files{.sampling = request,
                            .out = o.out,
@@ -129,6 +132,7 @@ void addSampleCommand(CLI::App& app, Context& context) {
   command->add_option("--temperature", o->temperature, "Factor on the latents")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  addModelOptions(*command, o->temperature, o->options);
   command
       ->add_option("--start", o->start,
                    "mean (the mean pose and a warm-up) or clip (the clip's first frames)")

@@ -134,8 +134,8 @@ class Runner {
   std::string write(Clip motion, const std::string& of, int sample) {
     motion.name = fmt::format("{}_{:03}", of, sample);
     io::WriteOptions options{.format = m_options.format};
-    options.recipe =
-        motionRecipe({}, SampleOrigin{m_model->info().hash, m_request.seed, m_request.temperature});
+    options.recipe = motionRecipe({}, SampleOrigin{m_model->info().hash, m_request.seed,
+                                                   m_request.temperature, m_request.options});
     options.recipe["command"] = m_context.commandLine;
     options.recipe["task"] = m_task.name;
     options.recipe["sample"] = sample;
@@ -232,6 +232,7 @@ void addTaskCommand(CLI::App& app, Context& context, const Task& task) {
   command->add_option("--temperature", o->task.temperature, "Factor on the latents")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  addModelOptions(*command, o->task.temperature, o->task.options);
   command->add_option("--format", o->format, "bvh, gltf, glb, npz or csv")
       ->check(CLI::IsMember({"bvh", "gltf", "glb", "npz", "csv"}))
       ->capture_default_str();

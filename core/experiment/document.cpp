@@ -3,6 +3,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/format_version.h"
 #include "base/hash.h"
 #include "experiment/comparison.h"
 
@@ -35,6 +36,7 @@ std::string againstFrom(JsonReader& reader, const std::string& fallback) {
 
 Experiment experimentFromJson(const Json& value, const std::string& origin) {
   JsonReader reader(value, origin);
+  readFormatVersion(reader, kExperimentVersion);
   Experiment out;
   out.title = reader.optional("title", out.title);
   out.notes = reader.optional("notes", out.notes);
@@ -105,7 +107,8 @@ bool Experiment::operator==(const Experiment& other) const {
 }
 
 Json toJson(const Experiment& e) {
-  Json out = withoutView(e);
+  Json out = {{"version", kExperimentVersion}};
+  out.update(withoutView(e));
   if (Json view = toJson(e.view); !view.empty()) out["view"] = std::move(view);
   return out;
 }

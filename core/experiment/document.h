@@ -14,6 +14,9 @@
 
 namespace marey {
 
+/// Of documents; those without the key are of version 1.
+inline constexpr int kExperimentVersion = 1;
+
 struct Experiment {
   std::string title = "Experiment";
   std::string notes;

@@ -65,9 +65,12 @@ Json toJson(const ExperimentCase& c) {
   return out;
 }
 
-TaskRequest requestOf(const ExperimentCase& c, uint64_t seed, double temperature) {
+TaskRequest requestOf(const ExperimentCase& c, uint64_t seed, const ExperimentSystem& system) {
   const Task& task = taskNamed(c.task);
-  TaskRequest out{.samples = c.samples, .seed = seed, .temperature = temperature};
+  TaskRequest out{.samples = c.samples,
+                  .seed = seed,
+                  .temperature = system.temperature,
+                  .options = system.options};
   for (const auto& [name, value] : c.options) optionNamed(task, name)->number(out, value);
   return out;
 }

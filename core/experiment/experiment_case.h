@@ -7,6 +7,7 @@
 #include "task/task.h"
 
 #include "base/json.h"
+#include "experiment/parts.h"
 
 namespace marey {
 
@@ -25,6 +26,7 @@ ExperimentCase caseFromJson(const Json& value, const std::string& origin,
 Json toJson(const ExperimentCase& experimentCase);
 
 /// What the task is asked for; the clip is to follow.
-TaskRequest requestOf(const ExperimentCase& experimentCase, uint64_t seed, double temperature);
+TaskRequest requestOf(const ExperimentCase& experimentCase, uint64_t seed,
+                      const ExperimentSystem& system);
 
 }  // namespace marey

@@ -2,6 +2,18 @@
 
 namespace marey {
 
+namespace {
+
+OptionValues optionsFrom(const Json& value, JsonReader reader) {
+  OptionValues out;
+  for (const auto& [name, number] : value.items()) out[name] = reader.required<double>(name);
+  if (out.contains("temperature"))
+    throw InputError(reader.place("temperature"), "the temperature beside 'options'", "in them");
+  return out;
+}
+
+}  // namespace
+
 ExperimentSystem systemFromJson(const Json& value, const std::string& origin,
                                 const std::string& prefix) {
   JsonReader reader(value, origin, prefix);
@@ -9,6 +21,8 @@ ExperimentSystem systemFromJson(const Json& value, const std::string& origin,
   out.name = reader.required<std::string>("name");
   out.model = reader.required<std::string>("model");
   out.temperature = reader.optional("temperature", out.temperature);
+  if (reader.has("options"))
+    out.options = optionsFrom(reader.raw("options"), reader.object("options"));
   reader.finish();
   requireAtLeast(reader, "temperature", out.temperature, 0.0);
   return out;
@@ -43,7 +57,10 @@ ExperimentPath pathFromJson(const Json& value, const std::string& origin,
 }
 
 Json toJson(const ExperimentSystem& system) {
-  return {{"name", system.name}, {"model", system.model}, {"temperature", system.temperature}};
+  Json out = {{"name", system.name}, {"model", system.model}, {"temperature", system.temperature}};
+  // Documents without any keep the hash that they had.
+  if (!system.options.empty()) out["options"] = system.options;
+  return out;
 }
 
 Json toJson(const ExperimentPath& path) {

@@ -6,6 +6,7 @@
 
 #include "base/json_lists.h"
 #include "experiment/control_choice.h"
+#include "model/sampling_option.h"
 #include "motion/path.h"
 
 namespace marey {
@@ -14,6 +15,7 @@ struct ExperimentSystem {
   std::string name;   ///< shown in figures and tables
   std::string model;  ///< model file
   double temperature = 1.0;
+  OptionValues options = {};  ///< of the model's optionSchema, beside the temperature
   bool operator==(const ExperimentSystem&) const = default;
 };
 

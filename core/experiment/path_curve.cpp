@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "base/quantile.h"
 #include "stats/sample_distance.h"
 
 namespace marey {
@@ -30,8 +31,8 @@ Spread spreadOf(std::vector<double> values) {
   if (values.empty()) throw NumericError("a spread needs at least one value");
   std::sort(values.begin(), values.end());
   return {.minimum = values.front(),
-          .low = stats::sortedQuantile(values, 0.05),
-          .high = stats::sortedQuantile(values, 0.95),
+          .low = sortedQuantile(values, 0.05),
+          .high = sortedQuantile(values, 0.95),
           .maximum = values.back()};
 }
 

@@ -15,6 +15,7 @@ Json motionRecipe(const std::string& experimentHash, const std::optional<SampleO
   out["model_hash"] = origin->modelHash;
   out["seed"] = origin->seed;
   out["temperature"] = origin->temperature;
+  if (!origin->options.empty()) out["options"] = origin->options;
   return out;
 }
 
@@ -30,6 +31,8 @@ RecipeText recipeOf(const std::string& experimentHash, const std::vector<RecipeS
         named.emplace_back(std::string(kKeys[k]) + " " + set.name, texts[k]);
         values[kKeys[k]].insert(texts[k]);
       }
+      if (!set.origin->options.empty())
+        named.emplace_back("options " + set.name, textOf(set.origin->options));
     }
     named.emplace_back("motions " + set.name, set.motions);
   }

@@ -1,5 +1,6 @@
 // What every file that comes of an experiment carries, under the same keys wherever it is made:
-// "marey" (version), "experiment_hash", and of samples "model_hash", "seed" and "temperature".
+// "marey" (version), "experiment_hash", and of samples "model_hash", "seed" and "temperature",
+// and "options" where any were given.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "model/sampling_option.h"
 
 namespace marey {
 
@@ -17,6 +19,7 @@ struct SampleOrigin {
   std::string modelHash;
   uint64_t seed = 0;
   double temperature = 1.0;
+  OptionValues options = {};
 };
 
 /// Motions of one name in a file: natural ones, or those of a system.

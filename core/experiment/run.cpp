@@ -60,6 +60,7 @@ void sampleHeldOut(const MotionModel& model, const Experiment& e, const std::vec
     requests.back().samples = e.heldOutSamples;
     requests.back().seed = e.seed;
     requests.back().temperature = out.temperature;
+    requests.back().options = out.options;
     requests.back().firstSample = kHeldOutSampleBase + static_cast<int>(i) * e.heldOutSamples;
   }
   const auto dealt = dealtByLength(natural.size(), ranks.size(),
@@ -103,7 +104,7 @@ void samplePaths(const MotionModel& model, const Experiment& e, SystemResult& ou
                  Progress& progress, Ranks& ranks) {
   std::vector<SampleRequest> requests;
   for (const ExperimentPath& path : e.paths)
-    requests.push_back(requestOf(model, {.system = {out.name, {}, out.temperature},
+    requests.push_back(requestOf(model, {.system = {out.name, {}, out.temperature, out.options},
                                          .path = path,
                                          .samples = 1,
                                          .seed = e.seed,
@@ -189,9 +190,10 @@ void summariseLikelihoods(std::vector<SystemResult>& systems) {
 }  // namespace
 
 std::string labelOf(const SystemResult& system) {
-  return system.temperature == 1.0
-             ? system.name
-             : fmt::format("{}, temperature {:g}", system.name, system.temperature);
+  std::string out = system.name;
+  if (system.temperature != 1.0) out += fmt::format(", temperature {:g}", system.temperature);
+  if (!system.options.empty()) out += ", " + textOf(system.options);
+  return out;
 }
 
 ExperimentResult runExperiment(const Experiment& experiment, std::span<const ModelFamily> families,
@@ -224,8 +226,10 @@ ExperimentResult runExperiment(const Experiment& experiment, std::span<const Mod
       out.leftOut.push_back({system.name, std::move(why)});
       continue;
     }
-    SystemResult result{
-        .name = system.name, .info = model->info(), .temperature = system.temperature};
+    SystemResult result{.name = system.name,
+                        .info = model->info(),
+                        .temperature = system.temperature,
+                        .options = system.options};
     const double from = 0.05 + share * static_cast<double>(i);
     Progress scoring = progress.part(from, from), heldOut = progress.part(from, from + 0.5 * share),
              paths = progress.part(from + 0.5 * share, from + share);
@@ -237,7 +241,7 @@ ExperimentResult runExperiment(const Experiment& experiment, std::span<const Mod
     for (const ExperimentCase& one : experiment.cases) {
       Progress working = progress.part(from + share, from + share);
       result.cases[one.name] =
-          runCase(*model, one, out.natural, experiment.seed, result.temperature, working, ranks);
+          runCase(*model, one, out.natural, experiment.seed, system, working, ranks);
     }
     out.systems.push_back(std::move(result));
   }

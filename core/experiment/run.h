@@ -30,6 +30,7 @@ struct SystemResult {
   std::string name;
   ModelInfo info;
   double temperature = 1.0;
+  OptionValues options = {};  ///< of its optionSchema, beside the temperature
   std::vector<Clip> heldOut;  ///< along the natural clips' control
   std::vector<std::vector<RootFrame>> heldOutPaths;
   std::vector<ClipScore> naturalScores, heldOutScores;  ///< of every clip, also too short ones
@@ -40,7 +41,8 @@ struct SystemResult {
   LikelihoodSummary naturalLikelihood, heldOutLikelihood;
 };
 
-/// Its name, with the temperature of its samples unless that is 1.
+/// Its name, with the temperature of its samples unless that is 1 and the options that it was
+/// given.
 std::string labelOf(const SystemResult& system);
 
 struct ExperimentResult {

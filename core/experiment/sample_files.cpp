@@ -34,14 +34,16 @@ std::string bytesOf(const ControlRequest& r) {
   return packer.take();
 }
 
-/// Of all that steers the motions besides seed, temperature and model.
+/// Of all that makes the motions besides seed, temperature and model.
 std::string steeringHash(const SampleRequest& r) {
   const std::string control = bytesOf(r.control);
-  const std::vector<std::string_view> parts = {
+  const std::string options = textOf(r.options);
+  std::vector<std::string_view> parts = {
       bytesOf(r.path.data(), r.path.size() * sizeof(RootFrame)),
       bytesOf(r.startPoses.data(), static_cast<size_t>(r.startPoses.size()) * sizeof(float)),
       bytesOf(r.startControl.data(), static_cast<size_t>(r.startControl.size()) * sizeof(float)),
       control};
+  if (!options.empty()) parts.emplace_back(options);
   return contentHash(parts);
 }
 
@@ -87,10 +89,12 @@ Json toJson(const std::optional<FitResidual>& fit) {
 std::optional<FitResidual> fitFromJson(const Json& value, const std::string& origin) {
   if (value.is_null()) return std::nullopt;
   JsonReader reader(value, origin);
-  return FitResidual{reader.required<std::vector<std::string>>("joints"),
-                     reader.required<std::vector<double>>("rms_m"),
-                     reader.required<std::vector<double>>("max_m"),
-                     reader.required<std::vector<int>>("frames")};
+  FitResidual out{reader.required<std::vector<std::string>>("joints"),
+                  reader.required<std::vector<double>>("rms_m"),
+                  reader.required<std::vector<double>>("max_m"),
+                  reader.required<std::vector<int>>("frames")};
+  reader.finish();
+  return out;
 }
 
 std::optional<FitResidual> together(const std::optional<FitResidual>& a,
@@ -236,6 +240,7 @@ SampleFiles writeSampleFiles(const MotionModel& model, const SampleFilesRequest&
     }
     if (made) out.sampled += static_cast<int>(files.size());
     out.fit = together(out.fit, fitFromJson(reader.raw("fit"), origin));
+    reader.finish();
   }
   folder.commit(all);
   return out;

@@ -21,6 +21,7 @@ SampleSet drawSteered(const MotionModel& model, const SampleRecipe& recipe, Prog
     Steering steering = *recipe.steering;
     steering.options.seed = recipe.seed;
     steering.options.temperature = recipe.system.temperature;
+    steering.options.options = recipe.system.options;
     steering.options.sample += i;
     const LiveRollout rollout = replay(borrowed, steering);
     const FeatureSequence sequence = rollout.sequence();
@@ -86,6 +87,7 @@ SampleRequest requestOf(const MotionModel& model, const SampleRecipe& recipe) {
   request.samples = recipe.samples;
   request.seed = recipe.seed;
   request.temperature = recipe.system.temperature;
+  request.options = recipe.system.options;
   return request;
 }
 

@@ -36,14 +36,14 @@ std::string judged(const MotionModel& model, const Task& task, const TaskRequest
 }  // namespace
 
 CaseResult runCase(const MotionModel& model, const ExperimentCase& c,
-                   const std::vector<Clip>& natural, uint64_t seed, double temperature,
+                   const std::vector<Clip>& natural, uint64_t seed, const ExperimentSystem& system,
                    Progress& progress, Ranks& ranks) {
   const Task& task = taskNamed(c.task);
   CaseResult out{.whyNot = task.whyNot(model)};
   if (!out.whyNot.empty()) return out;
   const auto share = [&](size_t begin, size_t end, Progress& own) {
     std::vector<std::string> packed;
-    TaskRequest request = requestOf(c, seed, temperature);
+    TaskRequest request = requestOf(c, seed, system);
     for (size_t i = begin; i < end; ++i) {
       request.clip = natural[i];
       Progress part =

@@ -22,7 +22,7 @@ struct CaseResult {
 
 /// Throws InputError, NumericError and CancelledError. Whole at the first rank alone.
 CaseResult runCase(const MotionModel& model, const ExperimentCase& experimentCase,
-                   const std::vector<Clip>& natural, uint64_t seed, double temperature,
+                   const std::vector<Clip>& natural, uint64_t seed, const ExperimentSystem& system,
                    Progress& progress, Ranks& ranks);
 
 }  // namespace marey

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/quantile.h"
 #include "io/doctor_checks.h"
 
 namespace marey::io {
@@ -19,11 +20,9 @@ constexpr double kFloorOffsetM = 0.1;
 /// Faults of one kind that are listed one by one.
 constexpr size_t kMostListed = 5;
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// 0 of nothing.
+double median(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : quantile(values, 0.5);
 }
 
 /// Mean joint displacement from each frame to the next.

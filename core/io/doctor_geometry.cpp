@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/quantile.h"
 #include "io/doctor_checks.h"
 
 namespace marey::io {
@@ -15,12 +16,6 @@ constexpr double kSkateMS = 0.5;
 constexpr double kClearShare = 0.65;
 constexpr double kLowQuantile = 0.05;
 
-float quantile(std::vector<float> values, double q) {
-  const auto at = static_cast<size_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(at), values.end());
-  return values[at];
-}
-
 /// The feet and all joints below them.
 std::set<int> footJoints(const Skeleton& s, const SkeletonRoles& roles) {
   std::set<int> out(roles.feet.begin(), roles.feet.end());
@@ -29,18 +24,18 @@ std::set<int> footJoints(const Skeleton& s, const SkeletonRoles& roles) {
   return out;
 }
 
-std::vector<float> heights(const Clip& clip, int joint) {
-  std::vector<float> out(static_cast<size_t>(clip.frameCount()));
+std::vector<double> heights(const Clip& clip, int joint) {
+  std::vector<double> out(static_cast<size_t>(clip.frameCount()));
   for (int t = 0; t < clip.frameCount(); ++t) out[static_cast<size_t>(t)] = clip.at(t, joint).y();
   return out;
 }
 
 /// Frames in which a joint is at most `near` above the 5 % quantile of its height.
 std::vector<char> lowFrames(const Clip& clip, int joint, float near) {
-  const std::vector<float> height = heights(clip, joint);
-  const float limit = quantile(height, kLowQuantile) + near;
+  const std::vector<double> height = heights(clip, joint);
+  const double limit = quantile(height, kLowQuantile) + static_cast<double>(near);
   std::vector<char> out;
-  for (const float y : height) out.push_back(y <= limit ? 1 : 0);
+  for (const double y : height) out.push_back(y <= limit ? 1 : 0);
   return out;
 }
 
@@ -91,11 +86,12 @@ Vec3 forwardAt(const Clip& clip, const SkeletonRoles& roles, const Forward& forw
 std::optional<double> floorHeight(const Clip& clip, const SkeletonRoles& roles) {
   if (roles.feet.empty()) return std::nullopt;
   const std::set<int> feet = footJoints(*clip.skeleton, roles);
-  std::vector<float> lowest(static_cast<size_t>(clip.frameCount()), INFINITY);
+  std::vector<double> lowest(static_cast<size_t>(clip.frameCount()), INFINITY);
   for (int t = 0; t < clip.frameCount(); ++t)
     for (const int j : feet)
-      lowest[static_cast<size_t>(t)] = std::min(lowest[static_cast<size_t>(t)], clip.at(t, j).y());
-  return quantile(lowest, kLowQuantile);
+      lowest[static_cast<size_t>(t)] =
+          std::min(lowest[static_cast<size_t>(t)], static_cast<double>(clip.at(t, j).y()));
+  return quantile(std::move(lowest), kLowQuantile);
 }
 
 std::optional<double> footSkateShare(const Clip& clip, const SkeletonRoles& roles) {

@@ -225,8 +225,4 @@ Inputs findInputs(const std::vector<std::string>& inputs, const fs::path& folder
   throw InputError({.path = "inputs"}, "at least one motion file", "none");
 }
 
-std::vector<fs::path> expandInputs(const std::vector<std::string>& inputs, const fs::path& folder) {
-  return findInputs(inputs, folder).paths();
-}
-
 }  // namespace marey::io

@@ -45,8 +45,4 @@ struct Inputs {
 /// the list's line and the nearest name) when one is missing.
 Inputs findInputs(const std::vector<std::string>& inputs, const std::filesystem::path& folder = {});
 
-/// The files alone.
-std::vector<std::filesystem::path> expandInputs(const std::vector<std::string>& inputs,
-                                                const std::filesystem::path& folder = {});
-
 }  // namespace marey::io

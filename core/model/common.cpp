@@ -1,7 +1,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/format_version.h"
 #include "base/hash.h"
+#include "base/tensor_metadata.h"
 #include "model/linear_gaussian.h"
 #include "model/model_family.h"
 #include "model/pose_units.h"
@@ -56,6 +58,26 @@ double Standardiser::logDetPerFrame() const {
   });
 }
 
+std::vector<SamplingOption> optionSchemaOf(const std::string& path,
+                                           std::span<const ModelFamily> families) {
+  const Json metadata = readTensorMetadata(path);
+  JsonReader reader(metadata, path);
+  const ModelFamily& family = familyNamed(reader.required<std::string>("family"), families, path);
+  return family.describe(reader.raw("config"), path).optionSchema;
+}
+
+void requireKnownConfigKeys(const Json& config, const std::string& origin) {
+  if (!config.is_object() || !(config.contains("family") || config.contains("model"))) return;
+  JsonReader reader(config, origin);
+  readFormatVersion(reader, kConfigVersion);
+  reader.optional<std::string>("family", "");
+  reader.optional<std::string>("name", "");
+  reader.optional<std::string>("notes", "");
+  for (const char* key : {"model", "training"})
+    if (reader.has(key)) reader.raw(key);
+  reader.finish();
+}
+
 const ModelFamily& familyNamed(const std::string& name, std::span<const ModelFamily> families,
                                const std::string& origin) {
   std::string known;
@@ -77,6 +99,7 @@ std::unique_ptr<MotionModel> loadModel(const std::string& path,
         file.metadata.empty()
             ? "a safetensors file of another program (marey model import reads it)"
             : "a file of kind '" + reader.optional<std::string>("kind", "unknown") + "'");
+  readFormatVersion(reader, kModelVersion);  // before the family, which may be newer too
   const ModelFamily& family = familyNamed(reader.required<std::string>("family"), families, path);
   return family.load(std::move(file), path, options);
 }
@@ -84,6 +107,7 @@ std::unique_ptr<MotionModel> loadModel(const std::string& path,
 const ModelFamily& familyOf(const Json& config, std::span<const ModelFamily> families,
                             const std::string& origin) {
   JsonReader reader(config, origin);
+  requireKnownConfigKeys(config, origin);
   if (reader.has("family"))
     return familyNamed(reader.required<std::string>("family"), families, origin);
   for (const auto& family : families)
@@ -196,6 +220,7 @@ std::shared_ptr<const Skeleton> skeletonFromJson(const Json& value, const std::s
 
 void storeCommon(const ModelInfo& info, TensorFile& file) {
   file.metadata["kind"] = "model";
+  file.metadata["version"] = kModelVersion;
   file.metadata["family"] = info.family;
   file.metadata["variant"] = info.variant;
   file.metadata["pose_dim"] = info.poseDim;

@@ -41,6 +41,13 @@ std::vector<std::shared_ptr<const MotionModel>> ModelCache::held() {
   return out;
 }
 
+std::vector<SamplingOption> ModelCache::optionSchema(const std::string& file) {
+  const std::string stamp = stampOf(file);
+  const std::lock_guard lock(m_mutex);
+  if (const auto found = m_schemas.find(stamp); found != m_schemas.end()) return found->second;
+  return m_schemas[stamp] = optionSchemaOf(file, m_families);
+}
+
 void requireRate(const MotionModel& model, const std::string& file, double fps) {
   if (std::abs(model.info().features.fps - fps) > 1e-6)
     throwInput({.path = file}, fmt::format("a model at the document's {} fps", fps), "{}",

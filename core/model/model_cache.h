@@ -1,6 +1,7 @@
 // Weights that were read once, for all threads that draw or score with them.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -20,6 +21,8 @@ class ModelCache {
   std::shared_ptr<const MotionModel> model(const std::string& file);
   /// Those that it holds now.
   std::vector<std::shared_ptr<const MotionModel>> held();
+  /// What a sampling of a file's model takes, read once without its weights. Throws as `model`.
+  std::vector<SamplingOption> optionSchema(const std::string& file);
   /// Differs for other files, and for a file that was written anew.
   static std::string stampOf(const std::string& file);
 
@@ -30,7 +33,8 @@ class ModelCache {
   };
   std::span<const ModelFamily> m_families;
   std::mutex m_mutex;
-  std::vector<Entry> m_entries;  ///< the one used last in front
+  std::vector<Entry> m_entries;                                  ///< the one used last in front
+  std::map<std::string, std::vector<SamplingOption>> m_schemas;  ///< by stamp
 };
 
 /// Throws InputError unless a model has the document's frame rate.

@@ -68,11 +68,24 @@ struct ModelFamily {
   std::function<std::unique_ptr<MotionModel>(const ImportRequest&)> importCheckpoint = {};
 };
 
+/// Of configuration files; those without the key are of version 1.
+inline constexpr int kConfigVersion = 1;
+/// Throws InputError for a key beside those of a configuration ({"family", "name", "model", ...}),
+/// and for a newer version. A file of a family's authors, which has neither "family" nor "model",
+/// is that family's own affair.
+void requireKnownConfigKeys(const Json& config, const std::string& origin);
+
 const ModelFamily& familyNamed(const std::string& name, std::span<const ModelFamily> families,
                                const std::string& origin);
-/// That of a configuration: its "family", or the one that recognises it. Throws InputError.
+/// That of a configuration: its "family", or the one that recognises it. Throws InputError, also
+/// for unknown keys.
 const ModelFamily& familyOf(const Json& config, std::span<const ModelFamily> families,
                             const std::string& origin);
+
+/// What a sampling of a stored model takes. Its weights are not read. Throws FileError or
+/// InputError.
+std::vector<SamplingOption> optionSchemaOf(const std::string& path,
+                                           std::span<const ModelFamily> families);
 
 /// Stored models carry "family" in their metadata. Throws InputError for unknown families.
 std::unique_ptr<MotionModel> loadModel(const std::string& path,

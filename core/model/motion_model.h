@@ -13,6 +13,7 @@
 
 #include "base/tensor_file.h"
 #include "model/observation.h"
+#include "model/sampling_option.h"
 #include "motion/features.h"
 
 namespace marey {
@@ -51,6 +52,12 @@ enum class DensityKind {
 /// "none", "exact", "bound".
 std::string nameOf(DensityKind kind);
 
+/// A row of a model's card.
+struct ModelFact {
+  std::string name, value;
+  bool operator==(const ModelFact&) const = default;
+};
+
 struct ModelInfo {
   std::string family;   ///< as in the list of families
   std::string variant;  ///< free name of the configuration
@@ -60,6 +67,10 @@ struct ModelInfo {
   int64_t parameters = 0;
   LatentSpec latent;
   DensityKind density = DensityKind::None;
+  /// What a sampling of it takes. Empty where nothing is drawn.
+  std::vector<SamplingOption> optionSchema;
+  /// What the family has to say of it on a card, beside what stands here already.
+  std::vector<ModelFact> facts;
   bool causal = true;  ///< false: it must know the control of a whole motion before its first frame
   FeatureSpec features;
   std::shared_ptr<const Skeleton> skeleton;  ///< null for models imported without one
@@ -197,6 +208,10 @@ class MotionModel {
   virtual TensorFile save() const = 0;
 };
 
+/// The rows of a model's card, as they hold for any family (what is drawn, likelihood, causal, what
+/// a frame sees), and then the family's own.
+std::vector<ModelFact> factsOf(const ModelInfo& info);
+
 /// Throws InputError naming the model where it lacks the ability.
 const FrameGenerator& requireRollout(const MotionModel& model);
 const DensityEstimator& requireDensity(const MotionModel& model);
@@ -209,7 +224,10 @@ void requireSameJoints(const ModelInfo& info, const Clip& clip, const std::strin
 /// pose, or the clip's own where the body is a control. Throws InputError.
 FeatureSequence featuresOf(const ModelInfo& info, const Clip& clip);
 
-/// Standardiser, features and skeleton inside stored models and data sets.
+/// Of stored models, which loadModel checks; those without the key are of version 1.
+inline constexpr int kModelVersion = 1;
+
+/// Version, standardiser, features and skeleton inside stored models and data sets.
 void storeCommon(const ModelInfo& info, TensorFile& file);
 ModelInfo loadCommon(const TensorFile& file, const std::string& origin);
 

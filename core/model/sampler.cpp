@@ -39,9 +39,7 @@ void check(const ModelInfo& info, const SampleRequest& r) {
                fmt::format("a model of {} control values per frame ({})",
                            info.features.controlWidth(), summaryOf(info.features.control)),
                "{}", info.controlDim);
-  if (info.deterministic() && r.temperature != 1.0)
-    throwInput({.path = info.variant, .item = "temperature"},
-               "1: this model draws nothing that could be cooled", "{}", r.temperature);
+  requireDrawable(info, r.temperature, r.options, info.variant);
   if (r.startPoses.rows() == 0) return;
   if (r.startPoses.rows() != info.context || r.startPoses.cols() != info.poseDim)
     throwInput({.path = "start poses"}, fmt::format("{} x {}", info.context, info.poseDim),
@@ -106,9 +104,7 @@ void checkFinite(const ModelInfo& info, const Matrix& poses, const Lane& lane, i
 
 /// That of sample `b` of a request in generated frame `t`.
 void drawFor(const ModelInfo& info, const SampleRequest& r, int b, int t, float* out) {
-  const bool perClip = info.latent.per == LatentSpec::Per::Clip;
-  drawLatent(r.seed, r.firstSample + b, perClip ? 0 : t, r.temperature,
-             info.latent.degreesOfFreedom, {out, static_cast<size_t>(info.latent.width)});
+  drawLatent(info, {r.seed, r.firstSample + b, r.temperature, &r.options}, t, out);
 }
 
 /// All lanes advance together, frame by frame.
@@ -205,6 +201,22 @@ void drawLatent(uint64_t seed, int sample, int frame, double temperature, double
     scale *= std::sqrt(df / chiSquared(key, df));
   }
   for (float& value : out) value = static_cast<float>(value * scale);
+}
+
+void drawLatent(const ModelInfo& info, const LatentDraw& draw, int frame, float* out) {
+  const bool perClip = info.latent.per == LatentSpec::Per::Clip;
+  drawLatent(draw.seed, draw.sample, perClip ? 0 : frame, draw.temperature,
+             info.latent.degreesOfFreedom, {out, static_cast<size_t>(info.latent.width)});
+  if (draw.options != nullptr) applyOptions(info.optionSchema, *draw.options, out);
+}
+
+void requireDrawable(const ModelInfo& info, double temperature, const OptionValues& options,
+                     const std::string& origin) {
+  // The temperature has a place of its own in documents, where 1 says nothing.
+  if (temperature != 1.0) requireOption(info.optionSchema, "temperature", temperature, origin);
+  if (options.contains("temperature"))
+    throw InputError({.path = origin, .item = "options"}, "the temperature once", "twice");
+  requireOptions(info.optionSchema, options, origin);
 }
 
 void sampleFrames(const MotionModel& model, std::span<const SampleRequest> requests,

@@ -18,6 +18,7 @@ struct SampleRequest {
   int samples = 1;
   uint64_t seed = 1;
   double temperature = 1.0;
+  OptionValues options;  ///< of the model's optionSchema, beside the temperature
   double warmUpS = 1.0;  ///< generated before the first kept frame and dropped
   int firstSample = 0;   ///< number of the first sample: latents depend on it, not on the batch
   /// Poses to start from, [context, D] (the frames before the first kept one);
@@ -40,6 +41,19 @@ using FrameSink = std::function<void(size_t request, int frame, const Matrix& po
 /// `frame` counts from the first generated frame, warm-up included.
 void drawLatent(uint64_t seed, int sample, int frame, double temperature, double df,
                 std::span<float> out);
+
+/// Which of a model's latents are drawn, and how.
+struct LatentDraw {
+  uint64_t seed = 1;
+  int sample = 0;
+  double temperature = 1.0;
+  const OptionValues* options = nullptr;  ///< null: none
+};
+/// That of a frame of a model's motion; the same in every frame where a latent is a clip's.
+void drawLatent(const ModelInfo& info, const LatentDraw& draw, int frame, float* out);
+/// Throws InputError naming `origin` for what the model's optionSchema does not allow.
+void requireDrawable(const ModelInfo& info, double temperature, const OptionValues& options,
+                     const std::string& origin);
 
 /// All requests advance together as one batch; results do not depend on which are together.
 /// Memory is constant per sample: frames go to `sink` and are not kept.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantile.h"
 #include "base/tensor_metadata.h"
 
 namespace marey {
@@ -13,12 +14,7 @@ constexpr const char* kKey = "training_pace";
 PaceQuantiles quantilesOf(std::vector<double> values) {
   if (values.empty()) throw NumericError("the pace of training data needs at least one frame");
   std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    const double position = share * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<size_t>(position);
-    const size_t above = std::min(below + 1, values.size() - 1);
-    return std::lerp(values[below], values[above], position - static_cast<double>(below));
-  };
+  const auto at = [&](double share) { return sortedQuantile(values, share); };
   return {at(0.005), at(0.05), at(0.95), at(0.995)};
 }
 

@@ -58,19 +58,6 @@ std::vector<Vec3> restPositions(const Skeleton& skeleton) {
   return out;
 }
 
-std::vector<Vec3> endSitePositions(const Clip& clip) {
-  std::vector<Vec3> out;
-  if (!clip.transforms || !clip.skeleton) return out;
-  const std::vector<Quat> world = globalRotations(*clip.skeleton, *clip.transforms);
-  const auto width = static_cast<size_t>(clip.jointCount());
-  for (size_t t = 0; t < static_cast<size_t>(clip.frameCount()); ++t)
-    for (const Skeleton::EndSite& site : clip.skeleton->endSites) {
-      const size_t joint = t * width + static_cast<size_t>(site.parent);
-      out.push_back(clip.positions[joint] + world[joint] * site.offset);
-    }
-  return out;
-}
-
 std::vector<float> boneLengths(const Skeleton& skeleton) {
   std::vector<float> out;
   for (const auto& [parent, child] : skeleton.bones())

@@ -18,9 +18,6 @@ std::vector<Quat> globalRotations(const Skeleton& skeleton, const JointTransform
 /// Joint positions of the rest pose: offsets summed from the root (which is at its own offset).
 std::vector<Vec3> restPositions(const Skeleton& skeleton);
 
-/// World positions of the end sites, frames x end sites. Empty unless the clip has rotations.
-std::vector<Vec3> endSitePositions(const Clip& clip);
-
 /// Rest lengths of Skeleton::bones(), metres.
 std::vector<float> boneLengths(const Skeleton& skeleton);
 

@@ -134,15 +134,6 @@ Vec3d eulerNear(const Quatd& rotation, const EulerOrder& order, const Vec3d& pre
   return (one - previous).squaredNorm() <= (two - previous).squaredNorm() ? one : two;
 }
 
-std::vector<Vec3d> unwrappedEuler(const std::vector<Quatd>& rotations, const EulerOrder& order) {
-  std::vector<Vec3d> out;
-  out.reserve(rotations.size());
-  for (const Quatd& rotation : rotations)
-    out.push_back(out.empty() ? eulerFromQuat(rotation, order)
-                              : eulerNear(rotation, order, out.back()));
-  return out;
-}
-
 Vec3d logMap(const Quatd& rotation) {
   const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;
   const Vec3d vector = sign * rotation.vec();
@@ -170,28 +161,6 @@ Vec3d logNear(const Quatd& rotation, const Vec3d& before) {
   const Vec3d axis = angle > 1e-9 ? Vec3d(least / angle) : before.normalized();
   const double turns = std::round((before.dot(axis) - angle) / kTurn);
   return turns == 0.0 ? least : Vec3d((angle + kTurn * turns) * axis);
-}
-
-Vec6d sixDFromQuat(const Quatd& rotation) {
-  const Eigen::Matrix3d matrix = rotation.toRotationMatrix();
-  Vec6d out;
-  out << matrix.col(0), matrix.col(1);
-  return out;
-}
-
-Quatd quatFromSixD(const Vec6d& columns) {
-  const Vec3d first = columns.head<3>(), second = columns.tail<3>();
-  const double length = first.norm();
-  if (!(length > std::numeric_limits<double>::min()))
-    throw NumericError("6D rotation: expected two directions, found a first column of length 0");
-  const Vec3d x = first / length;
-  const Vec3d rest = second - x.dot(second) * x;
-  if (!(rest.norm() > 1e-12 * second.norm()))
-    throw NumericError("6D rotation: expected two directions, found parallel columns");
-  const Vec3d y = rest.normalized();
-  Eigen::Matrix3d matrix;
-  matrix << x, y, x.cross(y);
-  return Quatd(matrix).normalized();
 }
 
 double angleBetween(const Quatd& a, const Quatd& b) {

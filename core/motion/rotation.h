@@ -42,22 +42,12 @@ Vec3d eulerFromQuat(const Quatd& rotation, const EulerOrder& order);
 /// The same rotation in the angles nearest to `previous` (whole turns, the second solution of the
 /// middle angle, and the free split at the singularity are used), so that curves do not jump.
 Vec3d eulerNear(const Quatd& rotation, const EulerOrder& order, const Vec3d& previous);
-/// Angles of successive rotations without jumps.
-std::vector<Vec3d> unwrappedEuler(const std::vector<Quatd>& rotations, const EulerOrder& order);
-
 /// Axis times angle, angle in [0, pi]; a series replaces the quotient near the identity.
 Vec3d logMap(const Quatd& rotation);
 Quatd expMap(const Vec3d& axisAngle);
 /// Of all vectors whose expMap is `rotation` (their angles differ by whole turns) the one nearest
 /// to `before`, so that curves do not jump where an angle passes pi.
 Vec3d logNear(const Quatd& rotation, const Vec3d& before);
-
-/// The first two columns of the rotation matrix (Zhou et al. 2019, "On the continuity of rotation
-/// representations in neural networks").
-using Vec6d = Eigen::Matrix<double, 6, 1>;
-Vec6d sixDFromQuat(const Quatd& rotation);
-/// Gram-Schmidt of two columns of any length. Throws NumericError when they are parallel or zero.
-Quatd quatFromSixD(const Vec6d& columns);
 
 /// Angle in [0, pi] between two rotations; exact for small ones too.
 double angleBetween(const Quatd& a, const Quatd& b);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/quantile.h"
 
 namespace marey::report {
 
@@ -58,17 +59,6 @@ struct Bins {
   }
 };
 }  // namespace
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) throw NumericError("a quantile needs at least one value");
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto left = static_cast<size_t>(at);
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(left), values.end());
-  const double low = values[left];
-  if (left + 1 >= values.size()) return low;
-  const double high = *std::min_element(values.begin() + static_cast<long>(left) + 1, values.end());
-  return low + (at - static_cast<double>(left)) * (high - low);
-}
 
 double silvermanBandwidth(const std::vector<double>& values) {
   if (values.empty()) throw NumericError("a bandwidth needs at least one value");

@@ -20,8 +20,4 @@ double silvermanBandwidth(const std::vector<double>& values);
 /// Throws NumericError on no finite values, low >= high or fewer than two points.
 DensityCurve kernelDensity(const std::vector<double>& values, double low, double high, int points);
 
-/// Linear interpolation between order statistics (NumPy's default), share in [0, 1].
-/// Throws NumericError on no values.
-double quantile(std::vector<double> values, double share);
-
 }  // namespace marey::report

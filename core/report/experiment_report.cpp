@@ -158,7 +158,7 @@ render::Recipe recipeFor(const ExperimentResult& r, const std::string& command) 
   std::vector<RecipeSet> sets = {{"natural", {}, std::to_string(r.natural.size())}};
   for (const auto& s : r.systems)
     sets.push_back(
-        {s.name, SampleOrigin{s.info.hash, r.experiment.seed, s.temperature},
+        {s.name, SampleOrigin{s.info.hash, r.experiment.seed, s.temperature, s.options},
          std::to_string(r.experiment.samples * static_cast<int>(r.experiment.paths.size()))});
   render::Recipe out = recipeOf(r.hash, sets);
   out.emplace_back("command", command);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "base/quantile.h"
 #include "model/likelihood.h"
 #include "report/density.h"
 

@@ -46,7 +46,8 @@ ClipPtr inRange(const ClipPtr& clip, const std::optional<TimeRange>& range) {
 
 std::optional<SampleOrigin> originOf(const MotionGroup& group) {
   if (!group.recipe) return std::nullopt;
-  return SampleOrigin{group.modelHash, group.recipe->seed, group.recipe->system.temperature};
+  return SampleOrigin{group.modelHash, group.recipe->seed, group.recipe->system.temperature,
+                      group.recipe->system.options};
 }
 
 Json recipeOf(const std::string& experiment, const MotionGroup& group, int index,

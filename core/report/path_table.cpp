@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/quantile.h"
 #include "model/training_pace.h"
 #include "motion/standing.h"
 #include "report/experiment_report.h"
@@ -23,11 +24,7 @@ double footSpeedQuantile(const std::vector<ClipPtr>& clips, const std::vector<in
       const auto own = stats::horizontalSpeedsCmS(*clip, foot);
       speeds.insert(speeds.end(), own.begin(), own.end());
     }
-  if (speeds.empty()) return std::nan("");
-  const auto at =
-      speeds.begin() + static_cast<long>(share * static_cast<double>(speeds.size() - 1));
-  std::nth_element(speeds.begin(), at, speeds.end());
-  return *at;
+  return quantile(std::move(speeds), share);
 }
 
 /// Time in which a path stands still, and displacements of feet per second of it.

@@ -5,6 +5,7 @@
 
 #include <boost/math/distributions/students_t.hpp>
 
+#include "base/quantile.h"
 #include "stats/sample_distance.h"
 
 namespace marey::stats {

@@ -1,4 +1,4 @@
-// Distances between samples of one number, exact on sorted samples, and a density for plots.
+// Distances between samples of one number, exact on sorted samples.
 #pragma once
 
 #include <cstddef>
@@ -38,18 +38,5 @@ class PooledSamples {
   std::vector<double> m_sizes;  ///< of every group
   size_t m_groups = 0;          ///< groups of the first side
 };
-
-/// Value at a share of a sorted sample, linear between order statistics (NumPy's default).
-double sortedQuantile(const std::vector<double>& sorted, double share);
-
-/// A Gaussian kernel density, for plots.
-struct Density {
-  std::vector<double> x, y;
-  double bandwidth = 0.0;
-};
-/// On `points` equidistant places from 3 bandwidths below the sample to 3 above. Bandwidth by
-/// Silverman's rule, 0.9 min(sd, IQR / 1.34) n^(-1/5) (Silverman 1986, eq. 3.31), unless given.
-/// Throws InputError on an empty or not finite sample, or fewer than 2 points.
-Density kernelDensity(std::vector<double> samples, int points = 200, double bandwidth = 0.0);
 
 }  // namespace marey::stats

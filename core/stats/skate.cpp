@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/quantile.h"
 #include "stats/footsteps.h"
 #include "stats/sample_distance.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/packing.h"
+#include "base/quantile.h"
 #include "stats/bones.h"
 #include "stats/controls.h"
 #include "stats/footsteps.h"

@@ -17,8 +17,8 @@ Matrix latentsOf(const ModelInfo& info, const TaskRequest& r, int sample, long f
   const bool perClip = info.latent.per == LatentSpec::Per::Clip;
   Matrix out(perClip ? 1 : frames, info.latent.width);
   for (long t = 0; t < out.rows(); ++t)
-    drawLatent(r.seed, sample, static_cast<int>(t), r.temperature, info.latent.degreesOfFreedom,
-               {out.row(t).data(), static_cast<size_t>(out.cols())});
+    drawLatent(info, {r.seed, sample, r.temperature, &r.options}, static_cast<int>(t),
+               out.row(t).data());
   return out;
 }
 

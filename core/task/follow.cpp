@@ -18,6 +18,7 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
                         .samples = r.samples,
                         .seed = r.seed,
                         .temperature = r.temperature,
+                        .options = r.options,
                         .warmUpS = r.warmUpS};
   if (request.path.empty() && r.clip) {
     SampleRequest along = requestAlongClip(model, *r.clip, false);

@@ -44,6 +44,7 @@ LiveRollout::LiveRollout(std::shared_ptr<const MotionModel> model, const LiveOpt
                fmt::format("a model of {} control values per frame ({})",
                            info.features.controlWidth(), summaryOf(info.features.control)),
                "{}", info.controlDim);
+  requireDrawable(info, options.temperature, options.options, info.variant);
   const int rows = info.context + 1 + info.lookahead;
   m_bodyVelocity = inBodyFrame(m_velocity.facingRad);
   setType(options.begin.type, m_labels, -std::numeric_limits<double>::infinity());
@@ -80,9 +81,8 @@ void LiveRollout::step() {
   m_window.leftCols(kept) = past;
   m_window.rightCols(m_window.cols() - kept) = controlRow().replicate(1, 1 + info.lookahead);
   Matrix latent(1, info.latent.width);
-  const bool perClip = info.latent.per == LatentSpec::Per::Clip;
-  drawLatent(m_options.seed, m_options.sample, perClip ? 0 : m_generated, m_options.temperature,
-             info.latent.degreesOfFreedom, {latent.data(), static_cast<size_t>(info.latent.width)});
+  drawLatent(info, {m_options.seed, m_options.sample, m_options.temperature, &m_options.options},
+             m_generated, latent.data());
   m_pose = m_model->rollout()->sampleFrame(m_state, m_window, latent);
   if (!m_pose.allFinite())
     throw NumericError(fmt::format(

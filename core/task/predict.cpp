@@ -62,7 +62,8 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
                         .control = r.control,
                         .samples = r.samples,
                         .seed = r.seed,
-                        .temperature = r.temperature};
+                        .temperature = r.temperature,
+                        .options = r.options};
   request.startPoses = features.pose.middleRows(seed - info.context, info.context);
   request.startControl = features.control.middleRows(seed - info.context, info.context);
   TaskOutcome out;

@@ -21,6 +21,7 @@ TaskOutcome run(const MotionModel& model, const TaskRequest& r, Progress& progre
     LiveOptions options = r.steering->options;
     options.seed = r.seed;
     options.temperature = r.temperature;
+    options.options = r.options;
     options.sample += sample;
     LiveRollout rollout(borrowed, options);
     for (const LiveCommand& command : r.steering->commands) {

@@ -92,8 +92,4 @@ Steering steeringFromJson(const Json& value, const std::string& origin, const st
   return out;
 }
 
-bool sameSteering(const Steering& a, const Steering& b) {
-  return toJson(a) == toJson(b);
-}
-
 }  // namespace marey

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "model/sampling_option.h"
 #include "motion/features.h"
 
 namespace marey {
@@ -24,7 +25,8 @@ struct LiveOptions {
   uint64_t seed = 1;
   int sample = 0;
   double temperature = 1.0;
-  double warmUpS = 1.0;     ///< generated under `begin` and dropped, as the sampler does
+  OptionValues options = {};  ///< of the model's optionSchema, beside the temperature
+  double warmUpS = 1.0;       ///< generated under `begin` and dropped, as the sampler does
   double smoothingS = 0.3;  ///< time constant with which the velocity follows the command; 0: none
   LiveCommand begin = {};   ///< velocity at the start
   RootFrame start = {};
@@ -37,12 +39,9 @@ struct Steering {
   std::vector<LiveCommand> commands;  ///< of every frame
 };
 
-/// Seed and temperature are left out: they stand in the recipe or set that holds a steering. Equal
-/// commands in a row are written once, with the number of their frames.
+/// Seed, temperature and options are left out: they stand in the recipe or set that holds a
+/// steering. Equal commands in a row are written once, with the number of their frames.
 Json toJson(const Steering& steering);
 /// Strict: throws InputError naming `prefix` and the key.
 Steering steeringFromJson(const Json& value, const std::string& origin, const std::string& prefix);
-/// Whether both stand for the same JSON.
-bool sameSteering(const Steering& a, const Steering& b);
-
 }  // namespace marey

@@ -27,6 +27,7 @@ struct TaskRequest {
   int samples = 1;
   uint64_t seed = 1;
   double temperature = 1.0;
+  OptionValues options;  ///< of the model's optionSchema, beside the temperature
   double warmUpS = 1.0;  ///< follow: generated before the first frame and dropped
   int seedFrames = 0;    ///< predict: frames that are given, at the model's rate; 0: the context
   double seconds = 0.0;  ///< predict along the clip's own control: at most so long; 0: all of it

@@ -106,6 +106,7 @@ Recovery Autosave::recover() {
                     .copy = path,
                     .lock = std::move(lock)};
       one.experiment.folder = reader.required<std::string>("folder");
+      reader.finish();
       out.kept.push_back(std::move(one));
     } catch (const Error& error) {
       const QString aside = path + QStringLiteral(".broken");

@@ -72,11 +72,9 @@ QString modelCardText(const ModelInfo& info, const ModelAdvice& advice, const st
          QObject::tr("%1 million").arg(static_cast<double>(info.parameters) / 1e6, 0, 'f', 2));
   addRow(out, QObject::tr("pose and control"),
          QObject::tr("%1 and %2 values").arg(info.poseDim).arg(info.controlDim));
-  addRow(out, QObject::tr("sees"),
-         QObject::tr("%1 past and %2 future frames at %3 per second")
-             .arg(info.context)
-             .arg(info.lookahead)
-             .arg(number(info.features.fps)));
+  addRow(out, QObject::tr("rate"), QObject::tr("%1 per second").arg(number(info.features.fps)));
+  for (const ModelFact& fact : factsOf(info))
+    addRow(out, QString::fromStdString(fact.name), QString::fromStdString(fact.value));
   if (info.skeleton)
     addRow(out, QObject::tr("skeleton"), QObject::tr("%1 joints").arg(info.skeleton->jointCount()));
   addRow(out, QObject::tr("training"), trainingText(info.provenance));

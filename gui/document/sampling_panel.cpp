@@ -14,8 +14,10 @@
 #include <QVBoxLayout>
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "gui/common/number_box.h"
+#include "gui/document/option_form.h"
 #include "gui/workspace/workspace.h"
 
 #include "experiment/edits.h"
@@ -30,6 +32,9 @@ class SamplingPanel : public QWidget {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(8, 8, 8, 8);
     layout->addWidget(buildSystems());
+    m_options = new OptionForm(
+        [this](const SamplingOption& option, double value) { takeOption(option, value); }, this);
+    layout->addWidget(m_options);
     layout->addLayout(buildForm());
     layout->addLayout(buildButtons());
     m_speed = new QLabel(this);
@@ -54,6 +59,7 @@ class SamplingPanel : public QWidget {
     m_systems->horizontalHeader()->setSectionResizeMode(2, QHeaderView::Stretch);
     m_systems->setSelectionBehavior(QAbstractItemView::SelectRows);
     m_systems->setMaximumHeight(150);
+    connect(m_systems, &QTableWidget::currentCellChanged, this, [this] { refreshOptions(); });
     connect(m_systems, &QTableWidget::cellChanged, this, [this](int row, int column) {
       if (m_refreshing || column != 0) return;
       const std::string& before = m_workspace.experiment().systems.at(size_t(row)).name;
@@ -151,6 +157,62 @@ class SamplingPanel : public QWidget {
     });
   }
 
+  /// What the model of a system takes; nothing is known of a file that cannot be read.
+  std::optional<std::vector<SamplingOption>> schemaOf(const ExperimentSystem& system) {
+    try {
+      return m_workspace.optionSchema(system);
+    } catch (const Error&) {  // sampling will say what is wrong with it
+      return std::nullopt;
+    }
+  }
+
+  void takeOption(const SamplingOption& option, double value) {
+    const int row = optionRow();
+    if (row < 0) return;
+    change(QString::fromStdString(option.title), [=](Experiment& e) {
+      OptionValues& options = e.systems.at(static_cast<size_t>(row)).options;
+      if (value == option.fallback)
+        options.erase(option.name);
+      else
+        options[option.name] = value;
+    });
+  }
+
+  /// The model whose options are shown: the chosen one, or the only one.
+  int optionRow() const {
+    const auto count = static_cast<int>(m_workspace.experiment().systems.size());
+    const int row = m_systems->currentRow();
+    return row >= 0 && row < count ? row : count == 1 ? 0 : -1;
+  }
+
+  /// The temperature has its place in the table.
+  void refreshOptions() {
+    const int row = optionRow();
+    std::vector<SamplingOption> schema;
+    OptionValues values;
+    if (row >= 0) {
+      const ExperimentSystem& system = m_workspace.experiment().systems[static_cast<size_t>(row)];
+      schema = schemaOf(system).value_or(schema);
+      std::erase_if(schema, [](const SamplingOption& o) { return o.name == kTemperature; });
+      values = system.options;
+    }
+    m_options->show(schema, values);
+  }
+
+  /// A model without latents has no temperature.
+  void showTemperature(NumberBox& box, const ExperimentSystem& system) {
+    const std::vector<SamplingOption> schema = schemaOf(system).value_or(m_unknown);
+    const auto option = std::find_if(schema.begin(), schema.end(), [](const SamplingOption& o) {
+      return o.name == kTemperature;
+    });
+    const bool has = option != schema.end();
+    // One that a document has set to what the model refuses can still be set back.
+    box.setEnabled(has || system.temperature != 1.0);
+    box.setToolTip(has ? QString::fromStdString(option->about)
+                       : tr("This model draws nothing that could be cooled"));
+    box.display(system.temperature);
+  }
+
   /// Numbers that do not fit 64 bits go back to the document's.
   void takeSeed(const QString& text) {
     bool fits = false;
@@ -202,8 +264,9 @@ class SamplingPanel : public QWidget {
       m_systems->setItem(row, 2, file);
       auto* box = static_cast<NumberBox*>(m_systems->cellWidget(row, 1));
       if (box == nullptr) box = temperatureBox(row);
-      box->display(system.temperature);
+      showTemperature(*box, system);
     }
+    refreshOptions();
   }
 
   NumberBox* temperatureBox(int row) {
@@ -211,9 +274,6 @@ class SamplingPanel : public QWidget {
     box->setObjectName(QStringLiteral("temperature%1").arg(row));
     box->setRange(0.0, 4.0);
     box->setSingleStep(0.05);
-    box->setToolTip(
-        tr("Multiplies the latents: 0 gives the most likely motion, 1 the model's own "
-           "spread"));
     connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this, [this, row](double t) {
       change(tr("Temperature"),
              [=](Experiment& e) { e.systems.at(static_cast<size_t>(row)).temperature = t; });
@@ -235,8 +295,13 @@ class SamplingPanel : public QWidget {
                                        : QString());
   }
 
+  static constexpr const char* kTemperature = "temperature";
+
   Workspace& m_workspace;
   QTableWidget* m_systems = nullptr;
+  OptionForm* m_options = nullptr;
+  /// Of a file that cannot be read.
+  std::vector<SamplingOption> m_unknown{temperatureOption(1)};
   QComboBox* m_path = nullptr;
   NumberBox* m_seconds = nullptr;
   CountBox* m_count = nullptr;

@@ -4,6 +4,7 @@
 
 #include "gui/plots/distribution_data.h"
 
+#include "base/quantile.h"
 #include "report/density.h"
 #include "stats/sample_distance.h"
 
@@ -24,8 +25,8 @@ std::optional<Extent> centralExtent(const DistributionResult& result, size_t joi
     std::vector<double> values = set.values[joint].pooled;
     if (values.empty()) continue;
     std::sort(values.begin(), values.end());
-    low = std::min(low, stats::sortedQuantile(values, 0.005));
-    high = std::max(high, stats::sortedQuantile(values, 0.995));
+    low = std::min(low, sortedQuantile(values, 0.005));
+    high = std::max(high, sortedQuantile(values, 0.995));
   }
   if (low > high) return std::nullopt;
   const double margin = high > low ? 0.06 * (high - low) : 1.0;
@@ -81,10 +82,10 @@ void addViolins(LinkedGrid& out, const DistributionResult& result, size_t joint,
     out.add({.kind = SeriesKind::Dots,
              .name = set.look.name + ", median and quartiles",
              .colour = set.look.colour,
-             .x = {stats::sortedQuantile(values, 0.5)},
+             .x = {sortedQuantile(values, 0.5)},
              .y = {row},
-             .low = {stats::sortedQuantile(values, 0.25)},
-             .high = {stats::sortedQuantile(values, 0.75)},
+             .low = {sortedQuantile(values, 0.25)},
+             .high = {sortedQuantile(values, 0.75)},
              .errorAxis = 'x'},
             set.look.ids);
     row += 1.0;

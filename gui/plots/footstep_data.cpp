@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/quantile.h"
 #include "motion/roles.h"
 #include "report/density.h"
 #include "stats/controls.h"
@@ -111,7 +112,7 @@ double longestShown(const std::vector<FootstepResult>& results) {
   double longest = 0.0;
   for (const FootstepResult& result : results)
     if (const auto all = durationsOf(result); !all.empty())
-      longest = std::max(longest, report::quantile(all, 0.99));
+      longest = std::max(longest, quantile(all, 0.99));
   return longest;
 }
 

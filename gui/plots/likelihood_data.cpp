@@ -7,6 +7,7 @@
 #include "gui/plots/count_strip.h"
 #include <fmt/format.h>
 
+#include "base/quantile.h"
 #include "model/pose_units.h"
 #include "motion/main_body.h"
 #include "stats/sample_distance.h"
@@ -130,7 +131,7 @@ std::optional<std::pair<double, double>> centralRange(const std::vector<Likeliho
         if (std::isfinite(v)) all.push_back(v);
   if (all.size() < 2) return std::nullopt;
   std::sort(all.begin(), all.end());
-  const double low = stats::sortedQuantile(all, 0.002), high = all.back();
+  const double low = sortedQuantile(all, 0.002), high = all.back();
   if (!(low < high)) return std::nullopt;
   return std::pair{low - 0.06 * (high - low), high + 0.06 * (high - low)};
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/quantile.h"
 #include "motion/main_body.h"
 #include "stats/bones.h"
 #include "stats/sample_distance.h"
@@ -14,8 +15,12 @@ namespace {
 
 /// Samples that are cooler than the model say so wherever they are compared.
 std::string labelOf(const MotionGroup& group) {
-  if (!group.recipe || group.recipe->system.temperature == 1.0) return group.name;
-  return fmt::format("{}, temperature {:g}", group.name, group.recipe->system.temperature);
+  if (!group.recipe) return group.name;
+  const ExperimentSystem& system = group.recipe->system;
+  std::string out = group.name;
+  if (system.temperature != 1.0) out += fmt::format(", temperature {:g}", system.temperature);
+  if (!system.options.empty()) out += ", " + textOf(system.options);
+  return out;
 }
 
 /// The motions of a group that are used and have the joints of most of these.
@@ -128,9 +133,9 @@ Band bandOf(const std::vector<std::vector<double>>& runs) {
     if (values.empty()) continue;
     std::sort(values.begin(), values.end());
     band.step.push_back(static_cast<double>(t));
-    band.low.push_back(stats::sortedQuantile(values, 0.05));
-    band.median.push_back(stats::sortedQuantile(values, 0.5));
-    band.high.push_back(stats::sortedQuantile(values, 0.95));
+    band.low.push_back(sortedQuantile(values, 0.05));
+    band.median.push_back(sortedQuantile(values, 0.5));
+    band.high.push_back(sortedQuantile(values, 0.95));
   }
   return band;
 }

@@ -15,8 +15,8 @@ render::Recipe plotRecipe(const std::string& plot, const Experiment& experiment,
     RecipeSet entry{set.name, {}, std::to_string(set.clips.size())};
     for (const MotionGroup& group : groups)
       if (group.id == set.group && group.recipe)
-        entry.origin =
-            SampleOrigin{group.modelHash, group.recipe->seed, group.recipe->system.temperature};
+        entry.origin = SampleOrigin{group.modelHash, group.recipe->seed,
+                                    group.recipe->system.temperature, group.recipe->system.options};
     sets.push_back(std::move(entry));
   }
   render::Recipe out = recipeOf(experimentHash(experiment), sets);

@@ -18,8 +18,8 @@
 #include "gui/common/stick_view.h"
 #include "gui/steer/live_controls.h"
 
+#include "base/quantile.h"
 #include "experiment/steering/live_session.h"
-#include "stats/sample_distance.h"
 
 namespace marey::gui {
 namespace {
@@ -34,7 +34,7 @@ constexpr double kHeld = 0.95;
 double quantileOf(const std::deque<double>& values, double share) {
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
-  return stats::sortedQuantile(sorted, share);
+  return sortedQuantile(sorted, share);
 }
 
 void remember(std::deque<double>& values, double value) {
@@ -118,7 +118,7 @@ class LivePanel : public QWidget {
         continue;
       const std::string file = m_workspace.modelFile(e.systems[i]);
       models.push_back({e.systems[i].name, [this, file] { return m_workspace.model(file); },
-                        e.systems[i].temperature});
+                        e.systems[i].temperature, e.systems[i].options});
       m_systems.push_back(e.systems[i]);
     }
     m_seed = e.seed;

@@ -128,6 +128,10 @@ class Workspace : public QObject {
   std::shared_ptr<const MotionModel> model(const std::string& file) const {
     return m_models->model(file);
   }
+  /// What a sampling of a system's model takes. Throws FileError or InputError.
+  std::vector<SamplingOption> optionSchema(const ExperimentSystem& system) const {
+    return m_models->optionSchema(modelFile(system));
+  }
   std::string modelFile(const ExperimentSystem& system) const;
   /// The types of motion that models which are open know, and the paths of the document name.
   std::vector<std::string> motionTypes() const;

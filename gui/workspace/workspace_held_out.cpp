@@ -116,7 +116,8 @@ Job::Work Workspace::heldOutWork(const SampleRecipe& recipe, int id) {
     e.fps = recipe.fps;
     SystemResult result{.name = recipe.system.name,
                         .info = weights->info(),
-                        .temperature = recipe.system.temperature};
+                        .temperature = recipe.system.temperature,
+                        .options = recipe.system.options};
     Ranks alone;
     marey::sampleHeldOut(*weights, e, natural, result, progress, alone);
     auto motions = heldOutMotions(std::move(result), followed, recipe.samples);

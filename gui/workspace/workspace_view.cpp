@@ -161,8 +161,9 @@ std::vector<std::string> Workspace::pinnedSets() const {
   std::vector<std::string> out;
   const auto add = [&](const ExperimentSystem& system, const ExperimentPath& path, int samples,
                        uint64_t seed, const std::vector<int>& leftOut) {
-    out.push_back(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", system.name, system.temperature, path.name,
-                              samples, seed, fmt::join(leftOut, " ")));
+    out.push_back(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", system.name, system.temperature,
+                              textOf(system.options), path.name, samples, seed,
+                              fmt::join(leftOut, " ")));
   };
   for (const MotionGroup& group : m_groups)
     if (group.pinned && group.recipe)

@@ -33,6 +33,17 @@ int64_t trainableParameters(const Config& c) {
   return c.steps * (2 * d + linear + net);
 }
 
+std::vector<ModelFact> factsOf(const Config& c) {
+  std::vector<ModelFact> out{
+      {"flow", fmt::format("{} steps, {} layers of {} {} units in each coupling", c.steps, c.layers,
+                           c.hidden, c.cell)}};
+  if (c.based())
+    out.push_back({"base", fmt::format("{}: foresees the pose, below the flow", c.poseBase)});
+  if (c.observationFloorMm > 0.0)
+    out.push_back({"observation floor", fmt::format("{:g} mm", c.observationFloorMm)});
+  return out;
+}
+
 /// Completes what the configuration says about a model.
 ModelInfo completed(ModelInfo info, const Config& config) {
   info.context = config.tau;
@@ -40,6 +51,8 @@ ModelInfo completed(ModelInfo info, const Config& config) {
   info.parameters = trainableParameters(config);
   info.latent = {.width = config.poseDim, .degreesOfFreedom = config.degreesOfFreedom()};
   info.density = DensityKind::Exact;
+  info.optionSchema = {temperatureOption(config.poseDim)};
+  info.facts = factsOf(config);
   return info;
 }
 

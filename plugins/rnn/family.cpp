@@ -16,6 +16,9 @@ ModelInfo completed(ModelInfo info, const Config& config) {
   info.context = config.past;
   info.lookahead = config.lookahead;
   info.parameters = config.parameters();
+  info.facts = {
+      {"net", fmt::format("{} layers of {} {} units", config.layers, config.hidden, config.cell)},
+      {"sees its own poses", config.feedback ? "the one before" : "no"}};
   return info;
 }
 

@@ -18,6 +18,21 @@ ModelInfo completed(ModelInfo info, const Config& config) {
   info.parameters = parametersOf(config);
   info.latent = latentSpec(config);
   info.causal = false;
+  info.optionSchema = {temperatureOption(info.latent.width)};
+  if (config.gaussian())
+    info.optionSchema.push_back(
+        {.name = "decoder_noise",
+         .title = "Decoder's noise",
+         .about = "Whether motion has the decoder's noise around its mean, which makes it tremble",
+         .kind = SamplingOption::Kind::Switch,
+         .high = 1.0,
+         .first = config.latent,
+         .count = config.poseDim});
+  info.facts = {{"net", fmt::format("{} bidirectional layers of {} units each way in encoder and "
+                                    "decoder",
+                                    config.layers, config.hidden)},
+                {"values a clip", std::to_string(config.latent)},
+                {"decoder", config.decoder}};
   return info;
 }
 

@@ -135,8 +135,14 @@ class Families(Case):
         self.assertEqual((self.dir / "s/sample_000.csv").read_bytes(),
                          (self.dir / "s/sample_001.csv").read_bytes())
         self.assert_refused(["score", model, self.dir / "walks"], "likelihood", "rnn")
-        self.assert_refused(["sample", model, "--path", "preset:circle", "--temperature", "0.5",
-                             "--out", self.dir / "t"], "temperature")
+        for option in (("--temperature", "0.5"), ("--option", "temperature=0.5"),
+                       ("--option", "style=1")):
+            self.assert_refused(["sample", model, "--path", "preset:circle", *option,
+                                 "--out", self.dir / "t"], option[1].split("=")[0]
+                                if "=" in option[1] else "temperature")
+        info = self.run_json("model", "info", model)
+        self.assertEqual(info["options"], [])
+        self.assertEqual(info["facts"]["latent"], "none: equal control gives equal motion")
         experiment = self.dir / "e.json"
         experiment.write_text(json.dumps({
             "title": "both", "natural": ["walker:2,3,5"], "samples": 2, "held_out_samples": 2,

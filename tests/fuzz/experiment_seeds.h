@@ -110,6 +110,8 @@ inline Json viewSeed() {
 inline Json richDocument() {
   Json out = wholeDocument();
   for (const Json& path : pathKinds()) out["paths"].push_back(path);
+  out["version"] = 1;
+  out["systems"][0]["options"] = {{"decoder_noise", 0.0}};
   out["against"] = "same-control";
   out["natural_left_out"] = {"walk_001", "walk_002"};
   out["view"] = viewSeed();
@@ -124,12 +126,20 @@ inline Json trainingSeed() {
             {"batch", 8},
             {"accumulate", 2},
             {"learning_rate", 1e-3},
-            {"schedule", "noam"},
+            {"optimiser", "rmsprop"},
+            {"rms_decay", 0.9},
+            {"schedule", "step"},
+            {"decay_every_steps", 20},
+            {"decay_factor", 0.5},
             {"warmup_steps", 10},
             {"minimum_rate", 1e-5},
             {"clip_value", 5.0},
             {"clip_norm", 100.0},
             {"ema", 0.9},
+            {"input_noise", 0.1},
+            {"input_dropout", 0.1},
+            {"scheduled_sampling",
+             {{"from", 0.1}, {"to", 0.5}, {"begin_step", 1}, {"end_step", 50}}},
             {"steps", 100},
             {"checkpoint_every", 5},
             {"keep", 4},

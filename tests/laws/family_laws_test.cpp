@@ -1,6 +1,7 @@
 // What holds of anything that makes motion: one suite over every family in the list and a toy that
 // the core does not know. Nothing here names a family.
 #include <cmath>
+#include <set>
 
 #include "../unit/base/support.h"
 #include "law_models.h"
@@ -75,6 +76,58 @@ TEST_P(FamilyLaws, SaysWhatItIsAndWhatItCanDo) {
   EXPECT_EQ(described.lookahead, info.lookahead);
   EXPECT_EQ(described.causal, info.causal);
   EXPECT_EQ(described.density, info.density);
+  EXPECT_EQ(described.optionSchema, info.optionSchema);
+  EXPECT_EQ(described.facts, info.facts);
+}
+
+TEST_P(FamilyLaws, HasFactsForItsCard) {
+  const auto one = model();
+  EXPECT_FALSE(one->info().facts.empty());
+  std::set<std::string> names;
+  for (const auto& [name, value] : factsOf(one->info())) {
+    EXPECT_TRUE(names.insert(name).second) << name << " twice";
+    EXPECT_FALSE(value.empty()) << name;
+  }
+  for (const char* name : {"sees", "causal", "latent", "likelihood"})
+    EXPECT_TRUE(names.contains(name)) << name;
+}
+
+TEST_P(FamilyLaws, DeclaresWhatASamplingTakes) {
+  const auto one = model();
+  const ModelInfo& info = one->info();
+  EXPECT_EQ(info.optionSchema.empty(), info.deterministic());
+  std::set<std::string> names;
+  for (const SamplingOption& o : info.optionSchema) {
+    EXPECT_TRUE(names.insert(o.name).second) << o.name << " twice";
+    EXPECT_FALSE(o.title.empty() || o.about.empty()) << o.name;
+    EXPECT_TRUE(o.low <= o.fallback && o.fallback <= o.high) << o.name;
+    EXPECT_TRUE(o.first >= 0 && o.count > 0 && o.first + o.count <= info.latent.width) << o.name;
+  }
+}
+
+SampleRequest withOption(const std::string& name, double value) {
+  SampleRequest out = turning(2);
+  if (name == "temperature")
+    out.temperature = value;
+  else
+    out.options[name] = value;
+  return out;
+}
+
+TEST_P(FamilyLaws, EveryOptionHasAnEffectAndARange) {
+  const auto one = model();
+  const auto usual = posesOf(*one, turning(2));
+  for (const SamplingOption& o : one->info().optionSchema) {
+    EXPECT_TRUE(posesOf(*one, withOption(o.name, o.fallback)) == usual) << o.name;
+    EXPECT_FALSE(posesOf(*one, withOption(o.name, o.low)) == usual) << o.name;
+    for (const double bad : {o.low - 1.0, o.high + 1.0, std::nan("")})
+      EXPECT_THROW(posesOf(*one, withOption(o.name, bad)), InputError) << o.name << " " << bad;
+  }
+  const auto message =
+      test::messageOf<InputError>([&] { posesOf(*one, withOption("warmth", 0.5)); });
+  EXPECT_NE(message.find("warmth"), std::string::npos) << message;
+  for (const SamplingOption& o : one->info().optionSchema)
+    EXPECT_NE(message.find(o.name), std::string::npos) << message;
 }
 
 TEST_P(FamilyLaws, LearnsInTwentyStepsWhereItIsTrained) {

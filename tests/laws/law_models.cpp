@@ -56,8 +56,12 @@ std::vector<ModelFamily> allSystems() {
   fed.example["name"] = "rnn-feedback";
   fed.example["model"].update({{"past", 2}, {"feedback", true}});
   fed.example["training"].update(
-      {{"scheduled_sampling", {{"to", 1.0}, {"end_step", 20}}}, {"input_noise", 0.05}});
+      {{"scheduled_sampling", {{"to", 0.25}, {"end_step", 20}}}, {"input_noise", 0.05}});
   out.push_back(fed);
+  ModelFamily noisy = familyNamed("vae", out, "laws");
+  noisy.example["name"] = "vae-gaussian";
+  noisy.example["model"]["decoder"] = "gaussian";
+  out.push_back(noisy);
   return out;
 }
 

@@ -21,6 +21,13 @@ int directionsOf(const Json& config, const std::string& origin) {
 
 ModelInfo completed(ModelInfo info, int directions) {
   info.latent = {.width = directions};
+  info.optionSchema = {temperatureOption(directions),
+                       {.name = "first_direction",
+                        .title = "First direction",
+                        .about = "Factor on the direction in which poses differ most",
+                        .high = 2.0,
+                        .count = 1}};
+  info.facts = {{"directions", std::to_string(directions)}};
   info.parameters = static_cast<int64_t>(info.poseDim) * (1 + info.controlDim + directions);
   return info;
 }

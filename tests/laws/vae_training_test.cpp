@@ -291,10 +291,10 @@ TEST(VaeNet, TwentyStepsLowerTheLoss) {
       *t = t->to(torch::kFloat32);
     TrainingConfig training;
     const auto group = nn::joinProcesses({}, {});
-    GradientStep step(net, training, *group);
+    GradientStep gradient(net, training, *group);
     std::vector<double> losses;
     for (int64_t step = 0; step < 20; ++step) {
-      const StepReport report = step.take(batch, 0.01, step + 1);
+      const StepReport report = gradient.take(batch, 0.01, step + 1);
       ASSERT_TRUE(report.taken);
       ASSERT_EQ(report.terms.size(), 2U);
       EXPECT_NEAR(report.terms[0] + report.terms[1], report.loss, 1e-5 * std::abs(report.loss));

@@ -86,6 +86,7 @@ bool LiveSession::prepare(const std::stop_token& stop) {
     if (stop.stop_requested()) return false;
     LiveOptions options = m_options;
     options.temperature = model.temperature;
+    options.options = model.options;
     const auto loaded = model.load();
     options.begin = obeyed(loaded->info(), options.begin);
     m_rollouts.emplace_back(loaded, options);

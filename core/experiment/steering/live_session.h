@@ -24,6 +24,7 @@ struct LiveModel {
   std::string name;
   std::function<std::shared_ptr<const MotionModel>()> load;  ///< called on the session's thread
   double temperature = 1.0;
+  OptionValues options = {};
 };
 
 /// What has happened to one model since the last asking.

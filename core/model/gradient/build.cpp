@@ -1,30 +1,12 @@
 // The way from a configuration and a data set to a model, whatever its family.
 #include "model/gradient/build.h"
 
-#include <set>
-
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "model/training_pace.h"
 
 namespace marey {
 namespace {
-
-void requireKnownKeys(const TrainRequest& request) {
-  static const std::set<std::string> known{"version", "family", "name",
-                                           "notes",   "model",  "training"};
-  const Json& config = request.config;
-  if (!config.is_object() || !config.contains("model"))
-    throw InputError({.path = request.configOrigin},
-                     "an object with 'family', 'model' and 'training'", "something else");
-  for (const auto& [key, value] : config.items())
-    if (!known.contains(key))
-      throw InputError({.path = request.configOrigin, .item = fmt::format("key '{}'", key)},
-                       "one of family, name, notes, model, training, version", "another");
-  if (config.value("version", kConfigVersion) > kConfigVersion)
-    throwInput({.path = request.configOrigin, .item = "key 'version'"},
-               fmt::format("at most {}", kConfigVersion), "{}", config["version"].dump());
-}
 
 /// A configuration that states the size of its data must mean these data.
 void requireStatedSizes(const TrainRequest& request, const DataSet& data) {
@@ -84,7 +66,9 @@ ModelInfo commonInfo(const DataSet& data, const TrainRequest& request, const Mod
 
 TrainResult train(const DataSet& data, const TrainRequest& request,
                   std::span<const ModelFamily> families, Progress& progress) {
-  requireKnownKeys(request);
+  if (!request.config.is_object() || !request.config.contains("model"))
+    throw InputError({.path = request.configOrigin},
+                     "an object with 'family', 'model' and 'training'", "something else");
   requireStatedSizes(request, data);
   requireFinite(data.train, "training data");
   requireFinite(data.test, "test data");

@@ -5,9 +5,6 @@
 
 namespace marey {
 
-/// Of configuration files; those without the key are of version 1.
-inline constexpr int kConfigVersion = 1;
-
 /// A model of the configuration's family, by gradient or as the family builds it. The latter writes
 /// config.json, last.marey and best.marey (the same), and has nothing to resume.
 TrainResult train(const DataSet& data, const TrainRequest& request,

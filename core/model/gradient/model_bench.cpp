@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/quantile.h"
 #include "base/random.h"
 #include "model/gradient/learnt.h"
 #include "model/gradient/trainable.h"
@@ -25,11 +26,8 @@ double msSince(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double median(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : quantile(values, 0.5);
 }
 
 Matrix normalMatrix(uint64_t seed, uint32_t sample, uint32_t frame, long rows, long columns) {

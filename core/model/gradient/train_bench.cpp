@@ -7,6 +7,7 @@
 #include <ATen/CPUGeneratorImpl.h>
 
 #include "base/error.h"
+#include "base/quantile.h"
 #include "model/gradient/gradient_step.h"
 #include "model/gradient/model_bench.h"
 #include "model/gradient/weights.h"
@@ -17,10 +18,8 @@ namespace {
 
 constexpr int kStepsTogether = 2;  ///< of one path, before the other has its turn
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double median(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : quantile(values, 0.5);
 }
 
 /// One path of one random model in training.

@@ -2,10 +2,13 @@
 
 #include <cmath>
 
+#include "base/format_version.h"
 #include "model/gradient/weights.h"
 
 namespace marey {
 namespace {
+
+constexpr int kStateVersion = 1;
 
 void restore(torch::Tensor& target, const TensorFile& file, const std::string& key,
              const std::string& origin) {
@@ -24,10 +27,10 @@ Json storedIdentity(const Json& identity, const std::string& key, const std::str
 void saveState(const std::filesystem::path& path, const TrainingState& state,
                const torch::nn::Module& net, const Optimiser& optimiser, const Json& identity) {
   TensorFile file;
-  file.metadata = {{"kind", "training-state"},    {"identity", identity},
-                   {"step", state.step},          {"updates", state.updates},
-                   {"seconds", state.seconds},    {"non_finite", state.nonFinite},
-                   {"snapshots", state.snapshots}};
+  file.metadata = {{"kind", "training-state"},      {"version", kStateVersion},
+                   {"identity", identity},          {"step", state.step},
+                   {"updates", state.updates},      {"seconds", state.seconds},
+                   {"non_finite", state.nonFinite}, {"snapshots", state.snapshots}};
   if (std::isfinite(state.bestValid)) file.metadata["best_valid"] = state.bestValid;
   storeWeights(net, file);
   const auto& moments = optimiser.momentNames();
@@ -44,6 +47,7 @@ TrainingState loadState(const std::filesystem::path& path, torch::nn::Module& ne
   const std::string origin = path.string();
   const TensorFile file = readTensorFile(path);
   JsonReader reader(file.metadata, origin);
+  readFormatVersion(reader, kStateVersion);
   for (const auto& [key, value] : identity.items()) {
     const Json stored = storedIdentity(reader.raw("identity"), key, origin);
     if (stored != value)

@@ -67,7 +67,6 @@ class RecurrentStack {
   std::vector<float> recurrentWeights(long layer) const;
 
   const StackShape& shape() const { return m_shape; }
-  long hiddenStride() const { return m_hiddenStride; }
   size_t bytes() const;
   StackState start(long rows) const;
   void copyRow(const StackState& from, long fromRow, StackState& to, long toRow) const;

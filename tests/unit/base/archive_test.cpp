@@ -47,8 +47,9 @@ with zipfile.ZipFile('theirs.zip', 'w', zipfile.ZIP_DEFLATED) as z:
 with zipfile.ZipFile('lzma.zip', 'w', zipfile.ZIP_LZMA) as z:
     z.writestr('x', b'y' * 100000)
 )")) << slurp(folder / "python.log");
-  EXPECT_EQ(readArchive(folder / "theirs.zip"), (Files{{"x", std::string(100'000, 'y')}}));
-  EXPECT_THROW(readArchive(folder / "lzma.zip"), InputError);
+  EXPECT_EQ(parseArchive(slurp(folder / "theirs.zip"), "theirs.zip"),
+            (Files{{"x", std::string(100'000, 'y')}}));
+  EXPECT_THROW(parseArchive(slurp(folder / "lzma.zip"), "lzma.zip"), InputError);
 }
 
 TEST(Archive, OfTheSameContentIsTheSameInEveryTimeZone) {

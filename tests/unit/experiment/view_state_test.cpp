@@ -1,4 +1,6 @@
 // How an experiment was looked at, as its document keeps it.
+#include <functional>
+
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -98,6 +100,78 @@ TEST(ViewState, ADocumentWithoutOneOpensAsBefore) {
   const Experiment read = experimentFromJson(document, "old.json");
   EXPECT_TRUE(toJson(read.view).empty());
   EXPECT_FALSE(read.view.natural) << "no clip would be shown";
+}
+
+/// A document that uses every reader of its parts.
+Json wholeDocument() {
+  Experiment out = lookedAt();
+  out.systems[0].options = {{"decoder_noise", 0.0}};
+  out.paths.push_back({.name = "drawn",
+                       .path = {},
+                       .wayPoints = {{.x = 0, .z = 0, .timeS = {}, .speedMS = {}, .facing = {}},
+                                     {.x = 0, .z = 2, .timeS = {}, .speedMS = {}, .facing = {}}},
+                       .seconds = 0.0});
+  return toJson(out);
+}
+
+/// Every object of a document, but for those whose keys are free.
+void forObjects(const Json& value, const std::string& place,
+                const std::function<void(const std::string&)>& visit) {
+  if (place.ends_with("/options") || place.ends_with("/cameras")) return;
+  if (value.is_object()) visit(place);
+  if (value.is_structured())
+    for (const auto& [key, child] : value.items()) forObjects(child, place + "/" + key, visit);
+}
+
+TEST(Document, AMisspeltKeyIsRefusedInEveryPartOfIt) {
+  const Json whole = wholeDocument();
+  EXPECT_NO_THROW(experimentFromJson(whole, "x.json"));
+  int parts = 0;
+  forObjects(whole, "", [&](const std::string& place) {
+    Json broken = whole;
+    broken[Json::json_pointer(place)]["misspelt"] = 1;
+    try {
+      experimentFromJson(broken, "x.json");
+      ADD_FAILURE() << place << "/misspelt passes";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("misspelt"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("x.json"), std::string::npos) << error.what();
+    }
+    ++parts;
+  });
+  // The document, its systems, paths, way-points, view, cameras, sets, steering and runs.
+  EXPECT_GE(parts, 20);
+}
+
+TEST(Document, OfANewerVersionIsRefusedAndOneWithoutAVersionIsRead) {
+  Json document = wholeDocument();
+  EXPECT_EQ(document.at("version"), 1);
+  const Experiment now = experimentFromJson(document, "x.json");
+  document.erase("version");
+  EXPECT_EQ(experimentFromJson(document, "x.json"), now);
+  EXPECT_EQ(experimentHash(experimentFromJson(document, "x.json")), experimentHash(now));
+  document["version"] = 2;
+  try {
+    experimentFromJson(document, "x.json");
+    ADD_FAILURE() << "a newer version passes";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "x.json, key 'version': expected a version from 1 to 1 (a newer Marey wrote this), "
+              "found 2");
+  }
+}
+
+TEST(Options, OfASystemAreStoredAndCount) {
+  Experiment plain = lookedAt(), given = lookedAt();
+  given.systems[0].options = {{"decoder_noise", 0.0}, {"style", 0.5}};
+  EXPECT_EQ(asStored(given).systems[0].options, given.systems[0].options);
+  EXPECT_NE(experimentHash(given), experimentHash(plain));
+  EXPECT_FALSE(toJson(plain)["systems"][0].contains("options"));
+  Json document = toJson(given);
+  document["systems"][0]["options"]["style"] = "much";
+  EXPECT_THROW(experimentFromJson(document, "x.json"), InputError);
+  document["systems"][0]["options"] = {{"temperature", 0.5}};
+  EXPECT_THROW(experimentFromJson(document, "x.json"), InputError);
 }
 
 TEST(ViewState, WhatIsNotKnownIsRefusedByItsName) {

@@ -64,8 +64,10 @@ TEST(BvhReader, ChannelsTurnInTheirOwnOrderPerJointAndPositionsReplaceOffsets) {
   const Vec3d handAt = armAt + arm * Vec3d(0.3, 0.2, 0.1);
   EXPECT_LT((clip.at(1, 1).cast<double>() - armAt).norm(), 1e-5);
   EXPECT_LT((clip.at(1, 2).cast<double>() - handAt).norm(), 1e-5);
-  const std::vector<Vec3> tips = endSitePositions(clip);
-  EXPECT_LT((tips[1].cast<double>() - handAt - hand * Vec3d(0, 0.25, 0)).norm(), 1e-5);
+  const std::vector<Quat> turned = globalRotations(*clip.skeleton, *clip.transforms);
+  EXPECT_LT((turned[5].cast<double>().toRotationMatrix() - hand).norm(), 1e-5);
+  ASSERT_EQ(clip.skeleton->endSites.size(), 1U);
+  EXPECT_LT((clip.skeleton->endSites[0].offset - Vec3(0, 0.25f, 0)).norm(), 1e-6f);
   EXPECT_EQ(clip.source.eulerOrders, (std::vector<std::string>{"ZXY", "YZX", "XYZ"}));
 }
 

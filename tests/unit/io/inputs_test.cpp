@@ -14,12 +14,16 @@ using Paths = std::vector<fs::path>;
 
 const char* const kBvh = "HIERARCHY\nROOT a\n{\n}\n";
 
+Paths filesOf(const std::vector<std::string>& inputs) {
+  return findInputs(inputs).paths();
+}
+
 TEST(Inputs, AFolderGivesItsMotionFilesInNameOrder) {
   const test::TemporaryFolder folder;
   for (const char* name : {"b.bvh", "a.BVH", "c.bvh"}) writeFileAtomically(folder / name, kBvh);
   writeFileAtomically(folder / "notes.txt", "hello");
   writeFileAtomically(folder / "b.bvh.recipe.json", "{}");
-  EXPECT_EQ(expandInputs({folder.path().string()}),
+  EXPECT_EQ(filesOf({folder.path().string()}),
             (Paths{folder / "a.BVH", folder / "b.bvh", folder / "c.bvh"}));
 }
 
@@ -27,28 +31,28 @@ TEST(Inputs, AListGivesItsNamesRelativeToItsOwnFolder) {
   const test::TemporaryFolder folder;
   for (const char* name : {"x.bvh", "y.bvh"}) writeFileAtomically(folder / name, kBvh);
   writeFileAtomically(folder / "list.txt", "# two clips\r\ny.bvh\r\n\n  x.bvh  ");
-  EXPECT_EQ(expandInputs({"@" + (folder / "list.txt").string()}),
+  EXPECT_EQ(filesOf({"@" + (folder / "list.txt").string()}),
             (Paths{folder / "y.bvh", folder / "x.bvh"}));
 }
 
 TEST(Inputs, FilesStayInTheOrderGiven) {
   const test::TemporaryFolder folder;
   for (const char* name : {"x.bvh", "y.bvh"}) writeFileAtomically(folder / name, kBvh);
-  EXPECT_EQ(expandInputs({(folder / "y.bvh").string(), (folder / "x.bvh").string()}),
+  EXPECT_EQ(filesOf({(folder / "y.bvh").string(), (folder / "x.bvh").string()}),
             (Paths{folder / "y.bvh", folder / "x.bvh"}));
 }
 
 TEST(Inputs, EmptyFoldersListsAndMissingFilesAreRefused) {
   const test::TemporaryFolder folder;
-  EXPECT_THROW(expandInputs({folder.path().string()}), InputError);
+  EXPECT_THROW(filesOf({folder.path().string()}), InputError);
   writeFileAtomically(folder / "empty.txt", "# nothing\n\n");
-  EXPECT_THROW(expandInputs({"@" + (folder / "empty.txt").string()}), InputError);
-  EXPECT_THROW(expandInputs({}), InputError);
-  EXPECT_THROW(expandInputs({(folder / "missing.bvh").string()}), FileError);
-  EXPECT_THROW(expandInputs({"@" + (folder / "missing.txt").string()}), FileError);
+  EXPECT_THROW(filesOf({"@" + (folder / "empty.txt").string()}), InputError);
+  EXPECT_THROW(filesOf({}), InputError);
+  EXPECT_THROW(filesOf({(folder / "missing.bvh").string()}), FileError);
+  EXPECT_THROW(filesOf({"@" + (folder / "missing.txt").string()}), FileError);
   writeFileAtomically(folder / "list.txt", "a\n");
   try {
-    expandInputs({"@" + (folder / "list.txt").string()});
+    filesOf({"@" + (folder / "list.txt").string()});
     FAIL() << "expected an error";
   } catch (const FileError& e) {
     test::expectContains(e.what(), "list.txt:1");
@@ -90,7 +94,7 @@ TEST(Inputs, PatternsQuotesAndOtherSeparatorsOfListsAreUnderstood) {
     writeFileAtomically(folder / "data" / name, kBvh);
   const auto listed = [&](const std::string& line) {
     writeFileAtomically(folder / "list.txt", line);
-    return expandInputs({"@" + (folder / "list.txt").string()});
+    return filesOf({"@" + (folder / "list.txt").string()});
   };
   EXPECT_EQ(listed("data/x*.bvh"), (Paths{folder / "data/x 1.bvh", folder / "data/x2.bvh"}));
   EXPECT_EQ(listed("\"data/x 1.bvh\"\n"), (Paths{folder / "data/x 1.bvh"}));

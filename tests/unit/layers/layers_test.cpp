@@ -73,7 +73,7 @@ const std::map<std::string, Floor> kHouse{
        "gui/common", "gui/workspace", "gui/plots", "gui/path"},
       {"marey_qt", "VTK::"}}},
     {"gui/steer",
-     {{"stats", "task", "experiment", "render/base", "gui/common", "gui/workspace"}, {"marey_qt"}}},
+     {{"base", "task", "experiment", "render/base", "gui/common", "gui/workspace"}, {"marey_qt"}}},
     {"gui/training",
      {{"base", "model", "experiment", "render/base", "render/chart", "render/scene", "gui/common",
        "gui/workspace", "gui/plots"},

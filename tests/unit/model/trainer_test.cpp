@@ -54,6 +54,57 @@ void expectNames(const std::string& message, const std::string& part) {
   EXPECT_NE(message.find("damaged.marey"), std::string::npos) << message;
 }
 
+TEST(StoredModel, OfANewerVersionIsRefusedAndOneWithoutAVersionIsRead) {
+  const std::string message = refusal([](TensorFile& f) { f.metadata["version"] = 99; });
+  expectNames(message, "key 'version'");
+  expectNames(message, "from 1 to 1");
+  expectNames(message, "99");
+  expectNames(refusal([](TensorFile& f) { f.metadata["version"] = "new"; }), "version");
+  const TempFolder folder;
+  TensorFile old = test::tinyFile();
+  EXPECT_EQ(old.metadata.at("version"), 1);
+  old.metadata.erase("version");
+  writeTensorFile(folder / "old.marey", old);
+  EXPECT_EQ(loadModel((folder / "old.marey").string(), test::families())->info().variant, "tiny");
+}
+
+TEST(Configuration, WithAMisspeltKeyOrOfANewerVersionIsRefused) {
+  const auto refused = [](const Json& change, const char* part) {
+    Json config = test::tinyConfig();
+    config.update(change);
+    const auto message =
+        test::messageOf<InputError>([&] { familyOf(config, test::families(), "mine.json"); });
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_NE(message.find("mine.json"), std::string::npos) << message;
+  };
+  refused({{"trainning", Json::object()}}, "trainning");
+  refused({{"version", 2}}, "from 1 to 1");
+  refused({{"version", "1"}}, "version");
+  EXPECT_EQ(familyOf(test::tinyConfig(), test::families(), "mine.json").name, "moglow");
+}
+
+TEST(Trainer, AStateOfANewerVersionIsRefusedAndOneWithoutAVersionGoesOn) {
+  const TempFolder folder;
+  TrainRequest request = test::tinyRequest(folder / "run");
+  request.steps = 1;
+  test::trainTiny(request);
+  request.resume = true;
+  request.steps = 2;
+  const auto path = folder / "run" / "state.marey";
+  TensorFile state = readTensorFile(path);
+  state.metadata["version"] = 99;
+  writeTensorFile(path, state);
+  const auto message = test::messageOf<InputError>([&] { test::trainTiny(request); });
+  EXPECT_NE(message.find("state.marey"), std::string::npos) << message;
+  EXPECT_NE(message.find("from 1 to 1"), std::string::npos) << message;
+  // As runs were kept before there were versions, optimisers and options of inputs.
+  state.metadata.erase("version");
+  for (const char* key : {"optimiser", "input_noise", "input_dropout"})
+    state.metadata["identity"]["training"].erase(key);
+  writeTensorFile(path, state);
+  EXPECT_EQ(test::trainTiny(request).steps, 2);
+}
+
 TEST(TrainingPace, HoldsItsSharesOfTheFrames) {
   const TrainingPace pace = trainingPace(test::tinyData().train, 20.0);
   std::vector<double> speeds;

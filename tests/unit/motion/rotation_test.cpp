@@ -79,12 +79,20 @@ TEST(Rotation, EulerAnglesAtAndNearTheSingularityRebuildTheRotation) {
   }
 }
 
+/// Each nearest to the one before.
+std::vector<Vec3d> followed(const std::vector<Quatd>& rotations, const EulerOrder& order) {
+  std::vector<Vec3d> out{eulerFromQuat(rotations.front(), order)};
+  for (size_t i = 1; i < rotations.size(); ++i)
+    out.push_back(eulerNear(rotations[i], order, out.back()));
+  return out;
+}
+
 TEST(Rotation, UnwrappedAnglesFollowTwoFullTurnsWithoutAJump) {
   const EulerOrder order = parseEulerOrder("ZXY");
   std::vector<Quatd> turning;
   for (int i = 0; i <= 200; ++i)
     turning.push_back(quatFromEuler({0.1, 0.2, i * 4 * kPi / 200}, order));
-  const std::vector<Vec3d> angles = unwrappedEuler(turning, order);
+  const std::vector<Vec3d> angles = followed(turning, order);
   for (size_t i = 1; i < angles.size(); ++i)
     EXPECT_LT((angles[i] - angles[i - 1]).norm(), 0.07) << i;
   EXPECT_NEAR(angles.back()[2] - angles.front()[2], 4 * kPi, 1e-9);
@@ -95,7 +103,7 @@ TEST(Rotation, UnwrappedAnglesPassStraightThroughTheSingularity) {
   std::vector<Quatd> rotations;
   for (int i = 0; i <= 100; ++i)
     rotations.push_back(quatFromEuler({0.3, i * 0.02 + 0.57, 0.5}, order));
-  const std::vector<Vec3d> angles = unwrappedEuler(rotations, order);
+  const std::vector<Vec3d> angles = followed(rotations, order);
   for (size_t i = 0; i < angles.size(); ++i) {
     EXPECT_LT(angleBetween(quatFromEuler(angles[i], order), rotations[i]), 1e-5);
     EXPECT_NEAR(angles[i][1], static_cast<double>(i) * 0.02 + 0.57, 1e-5) << i;
@@ -128,24 +136,6 @@ TEST(Rotation, LogarithmUndoesTheExponentialFromTinyToNearlyHalfTurns) {
   }
   const Quatd q = expMap(axis);
   EXPECT_LT((logMap(Quatd(-q.coeffs())) - axis).norm(), 1e-12) << "q and -q are one rotation";
-}
-
-TEST(Rotation, SixNumbersAreTheFirstColumnsAndRebuildTheRotationAtAnyScale) {
-  for (uint32_t i = 0; i < 50; ++i) {
-    const Quatd q = randomRotation(i);
-    Vec6d columns = sixDFromQuat(q);
-    EXPECT_LT((columns.head<3>() - q * Vec3d::UnitX()).norm(), 1e-12);
-    EXPECT_LT((columns.tail<3>() - q * Vec3d::UnitY()).norm(), 1e-12);
-    columns.tail<3>() = 3.0 * columns.tail<3>() + 0.7 * columns.head<3>();
-    EXPECT_LT(angleBetween(quatFromSixD(5.0 * columns), q), 1e-7);
-  }
-}
-
-TEST(Rotation, SixNumbersWithoutTwoDirectionsAreRefused) {
-  Vec6d columns = Vec6d::Zero();
-  EXPECT_THROW(quatFromSixD(columns), NumericError);
-  columns << 1, 2, 3, 2, 4, 6;
-  EXPECT_THROW(quatFromSixD(columns), NumericError);
 }
 
 TEST(Rotation, ShortestArcTurnsOneDirectionIntoTheOther) {

@@ -13,6 +13,22 @@
 namespace marey {
 namespace {
 
+// The walker's own figures: a gait is drawn from a style with factors exp(s n) of a normal number n
+// that is cut at 2.
+const double kWidestGait = std::exp(0.10 * 2), kLongestGait = std::exp(0.06 * 2),
+             kQuickestGait = std::exp(0.04 * 2);
+constexpr double kWalkRatio = 0.39;  ///< m s, step length over cadence (Sekiya et al. 1996)
+constexpr double kLongestStepM = 0.85;
+constexpr double kFewestStepsHz = 1.25;
+constexpr double kJitter = 0.03;   ///< of a swing, cut at 2
+constexpr double kScatterM = 0.012;  ///< of a foot's place in either direction, cut at 2
+constexpr double kFlatAfter = 0.12;  ///< of a step's time, after which the toes are down
+
+/// Half the width of the steps of the normal style, at most.
+double halfWidestStepM() {
+  return 0.5 * kWidestGait * walkerStyles().front().stepWidthM;
+}
+
 const std::vector<WalkerClip>& dataSet() {
   static const std::vector<WalkerClip> clips = walkerDataSet(28, 6.0, 11);
   return clips;
@@ -28,11 +44,6 @@ std::pair<int, int> framesInside(const Contact& contact, double fps) {
           static_cast<int>(std::floor(contact.endS * fps))};
 }
 
-double horizontalSpeed(const Clip& clip, int t, int joint) {
-  const Vec3 d = clip.at(t, joint) - clip.at(t - 1, joint);
-  return std::hypot(d.x(), d.z()) * clip.fps;
-}
-
 TEST(Walker, HasTheTopologyOfTheMoGlowHuman) {
   const auto skeleton = walkerSkeleton();
   const std::vector<int> parents = {-1, 0,  1,  2,  3,  0,  5,  6,  7,  0, 9,
@@ -43,9 +54,16 @@ TEST(Walker, HasTheTopologyOfTheMoGlowHuman) {
 
 TEST(Walker, StandsAboutOneMetreSeventyFiveTall) {
   const Clip clip = walkPreset("still", 1.0).clip;
-  const int head = clip.skeleton->find("Head");
-  // The head joint and the top of the head above it.
-  EXPECT_NEAR(clip.at(0, head).y() + 0.12, 1.75, 0.06);
+  const Skeleton& body = *clip.skeleton;
+  double straight = 0.12;  // the top of the head above its joint
+  for (int j = body.find("Head"); j >= 0; j = body.parents[static_cast<size_t>(j)])
+    straight += static_cast<double>(body.offsets[static_cast<size_t>(j)].y());
+  EXPECT_NEAR(straight, 1.75, 0.01);
+  // Who stands is no taller than straight, and as much lower as he crouches, breathes and leans.
+  const WalkerStyle& normal = walkerStyles().front();
+  const double top = static_cast<double>(clip.at(0, body.find("Head")).y()) + 0.12;
+  EXPECT_LE(top, straight);
+  EXPECT_GE(top, straight - (normal.crouchM + 0.006 * 2) - normal.bounceM);
 }
 
 TEST(Walker, AnAnkleInContactKeepsItsPositionBitForBit) {
@@ -62,13 +80,15 @@ TEST(Walker, AnAnkleInContactKeepsItsPositionBitForBit) {
 
 TEST(Walker, ToesKeepTheirPositionBitForBitWhileTheFootIsFlat) {
   const WalkerClip w = walkPreset("fast", 5.0);
+  const double longest = kLongestStepM / 1.9 * (1.0 + 2 * kJitter);  // of a step at 1.9 m/s, s
   for (const Contact& contact : w.truth.contacts) {
     auto [first, last] = framesInside(contact, 60.0);
     // From the moment the toes have come down.
     while (first < last &&
            w.clip.at(first, contact.joint + 1).y() != w.clip.at(last, contact.joint + 1).y())
       ++first;
-    EXPECT_LT(first - contact.beginS * 60.0, 10.0);
+    // From the frame after the landing to the one after the toes are down.
+    EXPECT_LE(first - contact.beginS * 60.0, 2.0 + kFlatAfter * longest * 60.0);
     for (int t = first + 1; t <= last; ++t)
       ASSERT_EQ(w.clip.at(t, contact.joint + 1), w.clip.at(first, contact.joint + 1));
   }
@@ -84,7 +104,7 @@ TEST(Walker, AnAnkleOutsideItsContactsMoves) {
         w.truth.contacts.begin(), w.truth.contacts.end(),
         [&](const Contact& c) { return c.joint == ankle && from < c.endS && to > c.beginS; });
     if (planted) continue;
-    EXPECT_GT(horizontalSpeed(w.clip, t, ankle), 0.01) << "frame " << t;
+    EXPECT_NE(w.clip.at(t, ankle), w.clip.at(t - 1, ankle)) << "frame " << t;
   }
 }
 
@@ -150,7 +170,9 @@ TEST(Walker, HipsFollowThePath) {
   const Clip clip = walk(path, {.fps = 60.0}).clip;
   ASSERT_EQ(clip.frameCount(), static_cast<int>(path.size()));
   for (int t = 0; t < clip.frameCount(); ++t)
-    ASSERT_LT(std::hypot(clip.at(t, 0).x() - path[t].x, clip.at(t, 0).z() - path[t].z), 0.08);
+    // A body is never beside its feet.
+    ASSERT_LT(std::hypot(clip.at(t, 0).x() - path[t].x, clip.at(t, 0).z() - path[t].z),
+              halfWidestStepM());
 }
 
 TEST(Walker, StandingStillPlantsBothFeetForTheWholeClipWhileTheBodySways) {
@@ -164,17 +186,24 @@ TEST(Walker, StandingStillPlantsBothFeetForTheWholeClipWhileTheBodySways) {
   double travel = 0.0;
   for (int t = 1; t < w.clip.frameCount(); ++t)
     travel = std::max(travel, static_cast<double>((w.clip.at(t, 0) - w.clip.at(0, 0)).norm()));
-  EXPECT_GT(travel, 0.002);
-  EXPECT_LT(travel, 0.08);
+  EXPECT_GT(travel, 0.0);
+  EXPECT_LT(travel, halfWidestStepM()) << "the body is above its feet";
 }
 
 TEST(Walker, TurningOnTheSpotTakesSmallCorrectiveSteps) {
   std::vector<RootFrame> path(480);
   for (size_t t = 0; t < path.size(); ++t) path[t].heading = 0.6 * static_cast<double>(t) / 60.0;
   const WalkerClip w = walk(path, {.fps = 60.0});
-  EXPECT_GE(w.truth.contacts.size(), 6u);
+  // A foot stays until it is 0.22 rad away from where it should be, and is put where it should be
+  // within a pair of steps.
+  const double pairS = 2.0 * kQuickestGait / kFewestStepsHz;
+  const auto steps = static_cast<size_t>(0.6 * 8.0 / (0.22 + 0.6 * pairS));
+  EXPECT_GE(w.truth.contacts.size(), 2 * (1 + steps));
+  // It stands half a step's width beside the root and 2 cm behind it, but for its scatter.
+  const double farthest =
+      std::hypot(halfWidestStepM() + 2 * kScatterM, 0.02 + 2 * kScatterM);
   for (int t = 0; t < w.clip.frameCount(); ++t)
-    EXPECT_LT(std::hypot(w.clip.at(t, 3).x(), w.clip.at(t, 3).z()), 0.35);
+    EXPECT_LT(std::hypot(w.clip.at(t, 3).x(), w.clip.at(t, 3).z()), farthest);
 }
 
 TEST(Walker, FeetAlternateAndStepTimesAreTheGapsBetweenTouchDowns) {
@@ -186,8 +215,11 @@ TEST(Walker, FeetAlternateAndStepTimesAreTheGapsBetweenTouchDowns) {
   for (size_t i = 1; i < landings.size(); ++i) {
     EXPECT_NE(landings[i].joint, landings[i - 1].joint);
     EXPECT_NEAR(landings[i].beginS - landings[i - 1].beginS, w.truth.stepTimesS[i - 1], 1e-9);
-    EXPECT_GT(w.truth.stepTimesS[i - 1], 0.3);
-    EXPECT_LT(w.truth.stepTimesS[i - 1], 0.6);
+    // Step length over speed; a swing's jitter is at most all of it.
+    const double free = std::sqrt(kWalkRatio * 1.9);
+    EXPECT_GT(w.truth.stepTimesS[i - 1], free / kLongestGait / 1.9 * (1.0 - 2 * kJitter));
+    EXPECT_LT(w.truth.stepTimesS[i - 1],
+              std::min(kLongestStepM, free * kLongestGait) / 1.9 * (1.0 + 2 * kJitter));
   }
 }
 
@@ -200,8 +232,14 @@ TEST(Walker, FasterWalkingTakesLongerAndQuickerSteps) {
   };
   const double slow = meanStep("slow");
   const double fast = meanStep("fast");
-  EXPECT_GT(slow, 1.2 * fast);
-  EXPECT_GT(1.9 * fast, 1.2 * 0.7 * slow);
+  // Of one gait, whose factor is the same at 0.7 and 1.9 m/s: the step times are as
+  // sqrt(0.39 v) / v but for the longest step; four standard errors of the jitter of nine steps.
+  const double free = std::sqrt(1.9 / 0.7), jitter = 4 * kJitter / 3;
+  EXPECT_GT(slow, free * (1.0 - jitter) * fast);
+  // Slow steps are no slower than the slowest cadence.
+  const double slowest = kQuickestGait / kFewestStepsHz;
+  const double quickest = std::min(kLongestStepM, std::sqrt(kWalkRatio * 1.9)) / 1.9;
+  EXPECT_GT(1.9 * fast, (1.9 * quickest) / (0.7 * slowest) * (1.0 - jitter) * 0.7 * slow);
 }
 
 TEST(Walker, TheSamePlanAppearsAtAnyFrameRate) {

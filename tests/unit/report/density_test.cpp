@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/quantile.h"
 #include "base/random.h"
 
 namespace marey::report {
@@ -70,7 +71,7 @@ TEST(Density, QuantilesAreThoseOfNumpy) {
   EXPECT_NEAR(quantile(values, 0.5), 2.5, 1e-12);
   EXPECT_NEAR(quantile(values, 0.95), 8.95, 1e-12);
   EXPECT_EQ(quantile(values, 1.0), 10.0);
-  EXPECT_THROW(quantile({}, 0.5), NumericError);
+  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
 }
 
 }  // namespace

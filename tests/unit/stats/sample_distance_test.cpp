@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/quantile.h"
 
 namespace marey::stats {
 namespace {
@@ -58,38 +59,6 @@ TEST(Quantile, AgreesWithNumPy) {
   EXPECT_NEAR(sortedQuantile(sorted, 0.025), -0.325, 1e-12);
   EXPECT_NEAR(sortedQuantile(sorted, 0.5), 0.5, 1e-12);
   EXPECT_NEAR(sortedQuantile(sorted, 0.975), 2.965, 1e-12);
-}
-
-TEST(KernelDensity, AgreesWithSciPyAtSilvermansBandwidth) {
-  // h = 0.9 min(std(ddof=1), IQR/1.34) n^-0.2 by NumPy; gaussian_kde(a, bw_method=h/std)(x).
-  const Density density = kernelDensity(kA, 2001);
-  EXPECT_NEAR(density.bandwidth, 0.7509344823878465, 1e-12);
-  const auto at = [&](double x) {
-    size_t k = 0;
-    while (density.x[k + 1] <= x) ++k;
-    const double u = (x - density.x[k]) / (density.x[k + 1] - density.x[k]);
-    return density.y[k] + u * (density.y[k + 1] - density.y[k]);
-  };
-  EXPECT_NEAR(at(0.5), 0.2818635844534859, 1e-5);
-  EXPECT_NEAR(at(2.0), 0.1934757860518323, 1e-5);
-}
-
-TEST(KernelDensity, HasAnAreaOfOne) {
-  const Density density = kernelDensity({1.0, 2.0, 2.5, 9.0}, 4000);
-  double area = 0.0;
-  for (size_t i = 1; i < density.x.size(); ++i)
-    area += 0.5 * (density.y[i] + density.y[i - 1]) * (density.x[i] - density.x[i - 1]);
-  // Three bandwidths beyond the ends 0.3 % of two bumps are cut off.
-  EXPECT_NEAR(area, 1.0, 0.003);
-}
-
-TEST(KernelDensity, OfOneValueIsANarrowBump) {
-  const Density density = kernelDensity({4.0, 4.0, 4.0}, 101);
-  EXPECT_GT(density.bandwidth, 0.0);
-  EXPECT_NEAR(density.x[50], 4.0, 1e-9);
-  EXPECT_GT(density.y[50], density.y[10]);
-  EXPECT_THROW(kernelDensity({}, 10), InputError);
-  EXPECT_THROW(kernelDensity({1.0}, 1), InputError);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ TaskRequest requestFor(const MotionModel& model, const Clip& clip) {
   out.knownJoints = Matrix::Ones(features.frameCount(), clip.jointCount());
   out.knownJoints.rightCols(3).setZero();
   out.noiseM = 0.02;
-  out.steering = Steering{.options = {}, .commands = {30, LiveCommand{.forwardMS = 1.0}}};
+  out.steering.emplace();
+  out.steering->commands.assign(30, LiveCommand{.forwardMS = 1.0});
   return out;
 }
 

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "cli/command.h"
 #include "cli/readers.h"
-#include "render/film/video.h"
+#include "render/film/film.h"
 
 namespace marey::cli {
 namespace fs = std::filesystem;
@@ -43,15 +43,12 @@ render::View parseView(const std::string& text) {
 }
 
 /// Natural clips near-black, the others in one colour beside them, else in a colour each.
-render::SceneSpec sceneOf(std::vector<Clip> natural, std::vector<Clip> clips,
-                          const RenderOptions& options) {
+render::Shot shotOf(std::vector<Clip> natural, std::vector<Clip> clips,
+                    const RenderOptions& options) {
   std::vector<render::SceneMotion> motions;
-  const double strobeS = options.strobeS > 0.0 ? options.strobeS : 0.4;
   const auto add = [&](Clip& clip, const std::string& system, const render::Colour& colour) {
-    motions.push_back({.clip = std::make_shared<const Clip>(std::move(clip)),
-                       .system = system,
-                       .colour = colour,
-                       .strobeS = strobeS});
+    motions.push_back(
+        {.clip = std::make_shared<const Clip>(std::move(clip)), .colour = colour, .label = system});
   };
   for (Clip& clip : natural) add(clip, "natural", render::naturalColour());
   const bool alone = clips.size() == 1;
@@ -62,11 +59,12 @@ render::SceneSpec sceneOf(std::vector<Clip> natural, std::vector<Clip> clips,
     else
       add(clips[i], alone ? name : "samples", render::colourOf(0));
   }
-  render::SceneSpec scene = render::sceneOfMotions(std::move(motions));
-  scene.title = options.title;
-  scene.view = parseView(options.camera);
-  scene.orthographic = options.orthographic;
-  return scene;
+  render::Shot shot = render::shotOfMotions(std::move(motions));
+  shot.caption.title = options.title;
+  shot.view = parseView(options.camera);
+  shot.orthographic = options.orthographic;
+  shot.follow = options.follow;
+  return shot;
 }
 
 render::Recipe recipeOf(const Context& context, const std::vector<fs::path>& files) {
@@ -97,22 +95,24 @@ void runRender(const Context& context, const RenderOptions& options) {
   Progress progress = context.progress("rendering");
   Progress reading = progress.part(0.0, 0.1);
   const std::vector<Clip> naturalClips = readAll(natural, options.read, report, reading);
-  const render::SceneSpec scene =
-      sceneOf(naturalClips, readAll(inputs, options.read, report, reading), options);
+  const render::Shot shot =
+      shotOf(naturalClips, readAll(inputs, options.read, report, reading), options);
   std::vector<fs::path> all = natural.paths();
   for (const fs::path& file : inputs.paths()) all.push_back(file);
   const render::Recipe recipe = recipeOf(context, all);
   const bool still = !render::videoKind(options.out);
   int frames = 1;
   if (still) {
-    render::writePng(options.out, render::renderScene(scene, size.width, size.height), recipe);
+    constexpr double usualS = 0.4;
+    const auto plate = render::strobed(shot, options.strobeS > 0.0 ? options.strobeS : usualS);
+    render::writePng(options.out, render::drawEnd(plate, size.width, size.height), recipe);
   } else {
     const render::VideoFormat format{
         .width = size.width, .height = size.height, .fps = options.fps};
     Progress drawing = progress.part(0.1, 1.0);
-    frames = render::writeSceneVideo(options.out, scene, format,
-                                     {.follow = options.follow, .trail = options.strobeS > 0.0},
-                                     recipe, drawing);
+    const bool trail = options.strobeS > 0.0;
+    frames = render::writeFilm(options.out, trail ? render::withTrail(shot, options.strobeS) : shot,
+                               format, recipe, drawing);
   }
   progress.report(1.0);
   const double fps = still ? 0.0 : options.fps;

@@ -147,10 +147,7 @@ render::Colour systemColour(const ReportSystem& system) {
 }
 
 Figure sceneFigure(const ReportData& data, const ScenePanel& panel, int number) {
-  render::SceneSpec scene;
-  scene.path = panel.line;
-  scene.view = panel.view;
-  scene.orthographic = panel.orthographic;
+  std::vector<render::SceneMotion> motions;
   const bool natural = std::any_of(data.systems.begin(), data.systems.end(), [&](const auto& s) {
     return s.natural && s.clips.contains(panel.path);
   });
@@ -163,12 +160,10 @@ Figure sceneFigure(const ReportData& data, const ScenePanel& panel, int number) 
     for (size_t i = 0; i < count; ++i) {
       const auto clip = shortened(found->second[i], panel.seconds);
       if (strobeS <= 0.0) strobeS = autoStrobe(*clip);
-      scene.motions.push_back(
-          {.clip = clip,
-           .system = system.name,
-           .colour = systemColour(system),
-           .opacity = system.natural ? 1.0 : render::sampleOpacity(count, natural),
-           .strobeS = strobeS});
+      motions.push_back({.clip = clip,
+                         .colour = systemColour(system),
+                         .opacity = system.natural ? 1.0 : render::sampleOpacity(count, natural),
+                         .label = system.name});
       seconds = std::max(seconds, clip->seconds());
       ++shown;
     }
@@ -179,7 +174,12 @@ Figure sceneFigure(const ReportData& data, const ScenePanel& panel, int number) 
       "Rings mark where "
       "a foot rests; the grey line is the path that was asked for. Floor cells are 0.5 m.",
       sentence("motion", shown), strobeS, seconds);
-  figure.scene = std::move(scene);
+  render::Shot shot = render::printed(std::move(motions));
+  shot.options.path = panel.line;
+  shot.view = panel.view;
+  shot.orthographic = panel.orthographic;
+  shot.caption.legend = true;  // the caption names nobody
+  figure.scene = render::strobed(std::move(shot), strobeS);
   return figure;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/chart/chart.h"
-#include "render/scene/scene.h"
+#include "render/scene/shot.h"
 #include "report/report_data.h"
 
 namespace marey::report {
@@ -18,7 +18,7 @@ struct Figure {
   std::string title, caption;
   std::optional<render::ChartGrid> chart = std::nullopt;
   render::ChartSize size = {};
-  std::optional<render::SceneSpec> scene = std::nullopt;
+  std::optional<render::Shot> scene = std::nullopt;
 };
 
 /// The colour of a system: near-black for natural motion.

@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "experiment/file_names.h"
 #include "io/clip_io.h"
-#include "render/film/video.h"
 
 namespace marey {
 namespace {
@@ -74,22 +73,22 @@ std::string nameOf(const MotionGroup& group, const Motion& motion, int index) {
                      safeName(group.recipe->path.name), index);
 }
 
-render::SceneSpec figureOf(const ExportRequest& request) {
+render::Shot printedShot(const ExportRequest& request) {
   std::vector<render::SceneMotion> motions;
   std::vector<RootFrame> path;
   for (const ExportItem& item : request.items) {
-    motions.push_back({.clip = inRange(item.clip, request.range),
-                       .system = item.legend,
-                       .colour = item.colour,
-                       .strobeS = request.strobeS});
+    motions.push_back(
+        {.clip = inRange(item.clip, request.range), .colour = item.colour, .label = item.legend});
     if (request.path && path.empty()) path = item.wanted;
   }
-  render::SceneSpec scene = render::sceneOfMotions(std::move(motions));
-  scene.view = request.view;
-  scene.orthographic = request.orthographic;
-  scene.path = std::move(path);
-  scene.contacts = request.contacts;
-  return scene;
+  render::Shot shot = render::shotOfMotions(std::move(motions));
+  shot.view = request.view;
+  shot.orthographic = request.orthographic;
+  shot.follow = request.follow;
+  shot.options.path = std::move(path);
+  shot.options.contacts = request.contacts;
+  if (request.format == ExportFormat::Still) return render::strobed(shot, request.strobeS);
+  return request.trail ? render::withTrail(shot, request.strobeS) : shot;
 }
 
 ExportResult exportPicture(const ExportRequest& request, Progress& progress) {
@@ -100,18 +99,14 @@ ExportResult exportPicture(const ExportRequest& request, Progress& progress) {
   const render::VideoFormat format{
       .width = request.width, .height = request.height, .fps = request.fps, .replaceLonger = true};
   const bool still = request.format == ExportFormat::Still;
-  if (still && request.shot)
-    render::writePng(file,
-                     render::drawLive(*request.shot, request.stillS, request.width, request.height),
-                     recipe);
-  else if (still)
-    render::writePng(file, render::renderScene(figureOf(request), request.width, request.height),
-                     recipe);
+  const render::Shot shot = request.shot ? *request.shot : printedShot(request);
+  if (!still)
+    render::writeFilm(file, shot, format, recipe, progress);
   else if (request.shot)
-    render::writeLiveVideo(file, *request.shot, format, recipe, progress);
+    render::writePng(file, render::drawShot(shot, request.stillS, request.width, request.height),
+                     recipe);
   else
-    render::writeSceneVideo(file, figureOf(request), format,
-                            {.follow = request.follow, .trail = request.trail}, recipe, progress);
+    render::writePng(file, render::drawEnd(shot, request.width, request.height), recipe);
   return {.files = {file}, .fit = {}};
 }
 

@@ -11,8 +11,7 @@
 #include "experiment/recipe.h"
 #include "motion/skeleton_fit.h"
 #include "render/base/recipe.h"
-#include "render/film/live_video.h"
-#include "render/scene/scene.h"
+#include "render/film/film.h"
 
 namespace marey {
 
@@ -45,7 +44,7 @@ struct ExportRequest {
   int width = 1280, height = 720;
   double fps = 30.0;
   /// The scene of the window; none: strobed figures as `marey render` draws them.
-  std::optional<render::LiveShot> shot;
+  std::optional<render::Shot> shot;
   double stillS = 0.0;                 ///< moment of a still of `shot`
   Json shotSettings = Json::object();  ///< what the recipe of `shot` tells beside its own settings
   // Without a shot:

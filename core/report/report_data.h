@@ -11,8 +11,8 @@
 
 #include "motion/clip.h"
 #include "motion/features.h"
-#include "render/base/camera.h"
 #include "render/base/recipe.h"
+#include "render/scene/scene.h"
 
 namespace marey::report {
 

@@ -43,7 +43,7 @@ PageFigure writeFigure(const Figure& figure, const ReportData& data, const Repor
   const std::string description = figure.title + ". " + figure.caption;
   if (figure.scene) {
     const render::Image image =
-        render::renderScene(*figure.scene, options.sceneWidth, options.sceneHeight);
+        render::drawEnd(*figure.scene, options.sceneWidth, options.sceneHeight);
     const std::string png = render::encodePng(image, recipe);
     files.figures.push_back(output.write(
         name.string() + ".svg", sceneSvg(png, image.width, image.height, description, recipe)));

@@ -337,7 +337,7 @@ void saveScenePicture(Workspace& workspace, QWidget* parent) {
   workspace.jobs().start(
       Lane::Exports, QObject::tr("Picture of the 3D view"), [request, path](Progress&) {
         render::writePng(
-            path, render::drawLive(*request.shot, request.stillS, request.width, request.height),
+            path, render::drawShot(*request.shot, request.stillS, request.width, request.height),
             pictureRecipe(request));
       });
 }

@@ -62,7 +62,7 @@ ExportPictureForm::ExportPictureForm(SceneView* scene, QWidget* parent)
   m_camera->addItems({tr("Fixed"), tr("Following the figures")});
   if (scene != nullptr) {
     m_camera->setCurrentIndex(scene->scene().follow() ? 1 : 0);
-    m_dark->setChecked(scene->scene().options().dark);
+    m_dark->setChecked(scene->scene().options().tone == render::Tone::Dark);
   }
   m_legend->setChecked(true);
   m_strobe->setRange(0.05, 60.0);
@@ -130,11 +130,11 @@ void ExportPictureForm::addViews() {
     return;
   }
   add(tr("As it is seen now"), kAsSeen);
-  add(tr("From the side and above"), render::LiveView::ThreeQuarter);
-  add(tr("From the side"), render::LiveView::Side);
-  add(tr("From the front"), render::LiveView::Front);
-  add(tr("From behind"), render::LiveView::Back);
-  add(tr("From above"), render::LiveView::Top);
+  add(tr("From the side and above"), render::View::ThreeQuarter);
+  add(tr("From the side"), render::View::Side);
+  add(tr("From the front"), render::View::Front);
+  add(tr("From behind"), render::View::Back);
+  add(tr("From above"), render::View::Top);
 }
 
 void ExportPictureForm::setFormat(ExportFormat format) {
@@ -176,21 +176,21 @@ void ExportPictureForm::fill(ExportRequest& request, bool apart) const {
 
 void ExportPictureForm::fillShot(ExportRequest& request, bool apart) const {
   copyScene(*m_scene, request, apart);
-  render::LiveShot& shot = *request.shot;
-  shot.options.dark = m_dark->isChecked();
+  render::Shot& shot = *request.shot;
+  shot.options.tone = m_dark->isChecked() ? render::Tone::Dark : render::Tone::Light;
   if (const int view = m_view->currentData().toInt(); view != kAsSeen)
-    shot.view = static_cast<render::LiveView>(view);
+    shot.view = static_cast<render::View>(view);
   shot.orthographic = request.orthographic;
   shot.follow = request.follow;
   if (m_legend->isChecked()) addLegend(*m_scene, request);
 }
 
 void copyScene(SceneView& view, ExportRequest& request, bool apart) {
-  const render::LiveScene& scene = view.scene();
+  const render::Scene& scene = view.scene();
   std::set<const Clip*> wanted, shown;
   for (const ExportItem& item : request.items) wanted.insert(item.clip.get());
-  render::LiveShot shot;
-  for (render::LiveMotion motion : scene.motions()) {
+  render::Shot shot;
+  for (render::SceneMotion motion : scene.motions()) {
     if (!wanted.contains(motion.clip.get())) continue;
     shown.insert(motion.clip.get());
     if (apart) motion.highlighted = false;
@@ -227,8 +227,8 @@ void addLegend(const SceneView& view, ExportRequest& request) {
   for (size_t i = 0; i < firsts.size(); ++i)
     legend.groups.push_back({firsts[i]->colour, groupLabel(firsts[i]->group, counts[i])});
   request.shotSettings["legend"] = true;
-  request.shot->over =
-      legendPicture(legend, request.width, request.height, request.shot->options.dark);
+  request.shot->over = legendPicture(legend, request.width, request.height,
+                                     request.shot->options.tone == render::Tone::Dark);
 }
 
 }  // namespace marey::gui

@@ -9,14 +9,14 @@
 #include "gui/common/paint_style.h"
 #include "gui/path/current_path.h"
 
-#include "render/scene/live_scene.h"
+#include "render/scene/scene.h"
 
 namespace marey::gui {
 
 /// Positions are in pixels of a view `size`.
 class FloorPathTool {
  public:
-  FloorPathTool(CurrentPath& path, const render::LiveScene& scene) : m_path(path), m_scene(scene) {}
+  FloorPathTool(CurrentPath& path, const render::Scene& scene) : m_path(path), m_scene(scene) {}
 
   void setActive(bool active);
   bool active() const { return m_active; }
@@ -39,7 +39,7 @@ class FloorPathTool {
   QPolygonF disc(const WayPoint& point, double radiusM, const QSize& size) const;
 
   CurrentPath& m_path;
-  const render::LiveScene& m_scene;
+  const render::Scene& m_scene;
   /// Forgets a choice that was made on another path.
   void followPath();
 

@@ -140,14 +140,14 @@ void SceneBar::buildViewMenu() {
     const char* name;
     QString text;
     QList<QKeySequence> keys;
-    render::LiveView view;
+    render::View view;
   };
   const std::vector<Preset> presets = {
-      {"sceneViewThreeQuarter", tr("Three-quarter"), {Qt::Key_0}, render::LiveView::ThreeQuarter},
-      {"sceneViewSide", tr("Side"), {Qt::Key_1}, render::LiveView::Side},
-      {"sceneViewFront", tr("Front"), {Qt::Key_3}, render::LiveView::Front},
-      {"sceneViewBack", tr("Back"), {Qt::Key_9}, render::LiveView::Back},
-      {"sceneViewTop", tr("Top"), {Qt::Key_7}, render::LiveView::Top}};
+      {"sceneViewThreeQuarter", tr("Three-quarter"), {Qt::Key_0}, render::View::ThreeQuarter},
+      {"sceneViewSide", tr("Side"), {Qt::Key_1}, render::View::Side},
+      {"sceneViewFront", tr("Front"), {Qt::Key_3}, render::View::Front},
+      {"sceneViewBack", tr("Back"), {Qt::Key_9}, render::View::Back},
+      {"sceneViewTop", tr("Top"), {Qt::Key_7}, render::View::Top}};
   for (const Preset& preset : presets)
     addAction(menu, QLatin1String(preset.name), preset.text, preset.keys,
               [this, view = preset.view] { m_view.setView(view); });

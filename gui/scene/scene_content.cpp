@@ -103,7 +103,7 @@ std::vector<int> feetOrNone(const Skeleton& body, const std::string& names) {
 /// Motions may have different bodies: a joint is the same where it has the same name.
 void markJoints(const Workspace& workspace, Trails trails, SceneContent& content) {
   const std::string chosen = selectedJoint(workspace);
-  for (render::LiveMotion& motion : content.motions) {
+  for (render::SceneMotion& motion : content.motions) {
     const Skeleton& body = *motion.clip->skeleton;
     const int joint = chosen.empty() ? -1 : body.find(chosen);
     if (joint >= 0) motion.highlightJoint = joint;

@@ -9,7 +9,7 @@
 #include "gui/scene/motion_colouring.h"
 #include "gui/workspace/workspace.h"
 
-#include "render/scene/live_scene.h"
+#include "render/scene/scene.h"
 
 namespace marey::gui {
 
@@ -47,7 +47,7 @@ struct SceneLegend {
 };
 
 struct SceneContent {
-  std::vector<render::LiveMotion> motions;
+  std::vector<render::SceneMotion> motions;
   std::vector<MotionId> ids;  ///< of the motions, in their order
   SceneLegend legend;
 };

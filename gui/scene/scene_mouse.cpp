@@ -142,7 +142,7 @@ void SceneView::updateHover() {
   const auto hit = m_scene.pick(m_mouse.x(), m_mouse.y(), width(), height());
   QString text;
   if (hit && hit->motion < m_content.ids.size()) {
-    const render::LiveMotion& motion = m_content.motions[hit->motion];
+    const render::SceneMotion& motion = m_content.motions[hit->motion];
     const auto& names = motion.clip->skeleton->names;
     text = QString::fromStdString(motion.label);
     if (hit->joint >= 0 && hit->joint < static_cast<int>(names.size()))

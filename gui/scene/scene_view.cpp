@@ -142,7 +142,7 @@ void SceneView::updateMotions() {
 void SceneView::fallBack(const std::string& why) {
   m_trouble = QString::fromStdString(why);
   m_settings.placement = render::Placement::World;
-  render::LiveOptions options = m_scene.options();
+  render::SceneOptions options = m_scene.options();
   options.placement = render::Placement::World;
   m_scene.setOptions(options);
   Q_EMIT settingsReplaced();
@@ -155,24 +155,24 @@ void SceneView::fitNew() {
   // path alone is looked at once, so that editing it does not move the floor under the mouse.
   const bool more = count > m_fittedMotions || (path && !m_fittedPath && count == 0);
   if (more && !m_cameraKept && (!m_cameraMoved || m_fittedMotions == 0))
-    m_scene.setView(render::LiveView::ThreeQuarter, width(), height());
+    m_scene.setView(render::View::ThreeQuarter, width(), height());
   m_fittedMotions = count;
   m_fittedPath = path;
 }
 
 void SceneView::updateOptions() {
-  render::LiveOptions options;
+  render::SceneOptions options;
   options.placement = m_settings.placement;
   options.detail = m_settings.detail;
-  options.ghostsS = m_settings.ghostFrames > 0
-                        ? m_settings.ghostFrames / m_workspace.experiment().fps
-                        : m_settings.ghostsS;
+  options.strobe.everyS = m_settings.ghostFrames > 0
+                              ? m_settings.ghostFrames / m_workspace.experiment().fps
+                              : m_settings.ghostsS;
   options.trailS = m_settings.trailS;
   options.contactMarks = m_settings.contacts;
   options.contacts = m_contacts.rule();
   options.shadow = m_settings.shadow;
   if (m_settings.path) options.path = m_path->frames();
-  options.dark = isDark(palette());
+  options.tone = isDark(palette()) ? render::Tone::Dark : render::Tone::Light;
   try {
     m_scene.setOptions(options);
   } catch (const Error& error) {
@@ -217,7 +217,7 @@ void SceneView::setSettings(const SceneSettings& settings) {
   }
 }
 
-void SceneView::setView(render::LiveView view) {
+void SceneView::setView(render::View view) {
   m_cameraMoved = true;
   m_scene.setView(view, width(), height());
   schedule();

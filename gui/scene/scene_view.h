@@ -11,7 +11,7 @@
 #include "gui/workspace/contact_tolerance.h"
 #include <QVTKOpenGLNativeWidget.h>
 
-#include "render/scene/live_scene.h"
+#include "render/scene/scene.h"
 
 namespace marey::gui {
 
@@ -26,8 +26,8 @@ class SceneView : public QVTKOpenGLNativeWidget {
 
   const SceneSettings& settings() const { return m_settings; }
   void setSettings(const SceneSettings& settings);
-  render::LiveScene& scene() { return m_scene; }
-  void setView(render::LiveView view);
+  render::Scene& scene() { return m_scene; }
+  void setView(render::View view);
   void fit();
   /// Where the camera is, and back there; it then stays while motions come and go.
   CameraPose camera() const;
@@ -79,7 +79,7 @@ class SceneView : public QVTKOpenGLNativeWidget {
   void pick(const QPointF& at, bool add);
 
   Workspace& m_workspace;
-  render::LiveScene m_scene;
+  render::Scene m_scene;
   CurrentPath* m_path = nullptr;
   FloorPathTool m_tool;
   SceneSettings m_settings;

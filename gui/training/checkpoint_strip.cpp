@@ -7,7 +7,7 @@
 #include "gui/common/paint_style.h"
 
 #include "base/error.h"
-#include "render/scene/scene.h"
+#include "render/scene/shot.h"
 
 namespace marey::gui {
 namespace {
@@ -25,13 +25,13 @@ struct Wanted {
 
 QImage pictureOf(const Wanted& wanted) {
   const double seconds = (wanted.clip->frameCount() - 1) / wanted.clip->fps;
-  render::SceneSpec scene{.path = wanted.path, .legend = false, .scaleBar = false};
-  scene.motions.push_back({.clip = wanted.clip,
-                           .system = {},
-                           .colour = wanted.colour,
-                           .strobeS = std::max(kShortestStrobeS, seconds / kFigures)});
+  render::Shot shot =
+      render::strobed(render::printed({{.clip = wanted.clip, .colour = wanted.colour}}),
+                      std::max(kShortestStrobeS, seconds / kFigures));
+  shot.options.path = wanted.path;
+  shot.caption = {};
   // Twice as large, so that limbs stay smooth lines when it is made small.
-  const render::Image image = render::renderScene(scene, 2 * kWidth, 2 * kHeight);
+  const render::Image image = render::drawEnd(shot, 2 * kWidth, 2 * kHeight);
   const QImage view(image.pixels.data(), image.width, image.height, QImage::Format_RGBA8888);
   return view.scaled(kWidth, kHeight, Qt::IgnoreAspectRatio, Qt::SmoothTransformation);
 }

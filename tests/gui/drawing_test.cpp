@@ -8,7 +8,7 @@
 #include "gui/scene/scene_view.h"
 
 #include "render/base/ssim.h"
-#include "render/scene/live_picture.h"
+#include "render/scene/scene_picture.h"
 
 namespace marey::gui {
 namespace {
@@ -32,14 +32,14 @@ class Drawing : public WindowTest {
   }
   /// The same scene, drawn by itself.
   render::Image wanted() const {
-    const render::LiveScene& scene = m_view->scene();
-    render::LiveScene copy;
+    const render::Scene& scene = m_view->scene();
+    render::Scene copy;
     copy.setMotions(scene.motions());
     copy.setOptions(scene.options());
     copy.setTime(scene.time());
     copy.setViewpoint(scene.viewpoint());
     m_view->doneCurrent();  // a thread has one context at a time
-    return render::LivePicture().take(copy, m_view->width(), m_view->height());
+    return render::ScenePicture().take(copy, m_view->width(), m_view->height());
   }
   void expectAsWanted(const char* when) const {
     const render::Image is = shown(), should = wanted();

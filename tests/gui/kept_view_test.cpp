@@ -70,7 +70,7 @@ TEST_F(KeptView, TicksCameraAndColoursComeBackWithTheDocument) {
   m_workspace->setSampled(m_workspace->experiment().systems.front().name, false);
   child<QComboBox>(*m_window, "sceneColourBy")->setCurrentIndex(3);
   child<QCheckBox>(*m_window, "sceneShadow")->setChecked(false);
-  view.setView(render::LiveView::Top);
+  view.setView(render::View::Top);
   view.scene().orbit(0.3, -0.4);
   child<QAction>(*m_window, "sceneSaveCamera1")->trigger();
   view.scene().zoom(1.5);
@@ -282,7 +282,7 @@ TEST_F(KeptView, TheFitKeyFillsTheView) {
   view.scene().zoom(0.2);
   QTest::keyClick(&view, Qt::Key_F);
   double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
-  for (const render::LiveMotion& motion : view.content().motions)
+  for (const render::SceneMotion& motion : view.content().motions)
     for (int t = 0; t < motion.clip->frameCount(); ++t)
       for (int j = 0; j < motion.clip->jointCount(); ++j) {
         const auto at =

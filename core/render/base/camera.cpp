@@ -11,20 +11,6 @@
 namespace marey::render {
 
 namespace {
-Vec3 turned(const Vec3& direction, double angle) {
-  return Eigen::AngleAxisf(static_cast<float>(angle), Vec3::UnitY()) * direction;
-}
-
-ViewAxes axesOf(const Vec3& travel, View view, double elevation) {
-  if (view == View::Top) return {travel, Vec3::UnitY().cross(travel), -Vec3::UnitY()};
-  // The viewer stands to the side of the walk, turned so that it ends nearer than it starts.
-  const Vec3 right = view == View::Side ? travel : turned(travel, 0.42);
-  const Vec3 level = Vec3::UnitY().cross(right);
-  const auto lift = static_cast<float>(view == View::Side ? 0.0 : elevation);
-  const Vec3 forward = std::cos(lift) * level - std::sin(lift) * Vec3::UnitY();
-  return {right, right.cross(forward), forward};
-}
-
 struct Bounds {
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
   void include(double v) {
@@ -142,11 +128,6 @@ Camera fitCamera(std::span<const Vec3> points, const ViewAxes& axes, bool orthog
       orthographic ? fitOrthographic(points, axes, frame) : fitPerspective(points, axes, frame);
   setClipping(camera, points);
   return camera;
-}
-
-Camera fitCamera(std::span<const Vec3> points, const Vec3& travel, View view, bool orthographic,
-                 const Frame& frame, double elevation) {
-  return fitCamera(points, axesOf(travel, view, elevation), orthographic, frame);
 }
 
 }  // namespace marey::render

@@ -7,12 +7,6 @@
 
 namespace marey::render {
 
-enum class View {
-  ThreeQuarter,  ///< from the side and above, the walk going to the right and nearer
-  Side,          ///< level with the hips, the walk going to the right
-  Top,           ///< straight down, the walk going to the right
-};
-
 /// World metres; the picture's centre is at `target`.
 struct Camera {
   Vec3 eye = {0, 1, 5}, target = {0, 1, 0}, up = {0, 1, 0};
@@ -51,10 +45,5 @@ struct ViewAxes {
 /// Throws NumericError when there is no point.
 Camera fitCamera(std::span<const Vec3> points, const ViewAxes& axes, bool orthographic,
                  const Frame& frame);
-
-/// The nearest camera of this view that sees all points inside the frame.
-/// Throws NumericError when there is no point.
-Camera fitCamera(std::span<const Vec3> points, const Vec3& travel, View view, bool orthographic,
-                 const Frame& frame, double elevation = 0.36);
 
 }  // namespace marey::render

@@ -90,23 +90,4 @@ void VideoWriter::finish() {
   i.sink->finish();
 }
 
-int writeSceneVideo(const std::filesystem::path& path, const SceneSpec& scene,
-                    const VideoFormat& format, const VideoOptions& options, const Recipe& recipe,
-                    Progress& progress) {
-  VideoWriter writer(path, format, recipe);
-  SceneRenderer renderer(scene, format.width, format.height);
-  const int frames =
-      std::max(1, static_cast<int>(std::floor(renderer.seconds() * format.fps + 1e-6)));
-  // Known before minutes of drawing.
-  if (videoKind(path) == VideoKind::PngFrames && !format.replaceLonger)
-    requireNoLaterFrame(path, frames);
-  for (int k = 0; k < frames; ++k) {
-    progress.throwIfCancelled();
-    writer.add(renderer.frame(k / format.fps, options.follow, options.trail));
-    progress.report((k + 1.0) / frames, fmt::format("frame {} of {}", k + 1, frames));
-  }
-  writer.finish();
-  return frames;
-}
-
 }  // namespace marey::render

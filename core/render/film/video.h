@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "base/job.h"
-#include "render/scene/scene.h"
+#include "render/base/image.h"
+#include "render/base/recipe.h"
 
 namespace marey::render {
 
@@ -62,16 +62,5 @@ class VideoWriter {
   struct Internals;
   std::unique_ptr<Internals> m_internals;
 };
-
-struct VideoOptions {
-  bool follow = false;  ///< the camera moves along with the figures
-  bool trail = false;   ///< earlier figures stay, lighter
-};
-
-/// Every frame of a scene; returns their number. Throws CancelledError (no file is left) and what
-/// VideoWriter throws.
-int writeSceneVideo(const std::filesystem::path& path, const SceneSpec& scene,
-                    const VideoFormat& format, const VideoOptions& options, const Recipe& recipe,
-                    Progress& progress);
 
 }  // namespace marey::render

@@ -50,57 +50,6 @@ float longestBone(const Skeleton& skeleton, std::span<const Vec3> pose) {
   }
   return longest > 0.0F ? longest : 0.3F;
 }
-
-struct Basis {
-  Vec3 along, side, up;
-};
-
-/// Any two directions across `along`, chosen the same way every time.
-Basis basisOf(const Vec3& along) {
-  const Vec3 helper = std::abs(along.y()) < 0.9F ? Vec3::UnitY() : Vec3::UnitX();
-  const Vec3 side = helper.cross(along).normalized();
-  return {along, side, along.cross(side)};
-}
-
-void addVertex(Mesh& mesh, const Vec3& position, const Vec3& normal, const Colour& colour) {
-  mesh.positions.insert(mesh.positions.end(), {position.x(), position.y(), position.z()});
-  mesh.normals.insert(mesh.normals.end(), {normal.x(), normal.y(), normal.z()});
-  const auto byte = [](double v) { return static_cast<uint8_t>(std::lround(v * 255.0)); };
-  mesh.colours.insert(mesh.colours.end(), {byte(colour.r), byte(colour.g), byte(colour.b)});
-}
-
-/// The skin of the two end balls and the cone between them, as rings from pole to pole.
-void appendCapsule(Mesh& mesh, const Vec3& a, const Vec3& b, float radiusA, float radiusB,
-                   const Colour& colour, const MeshDetail& detail) {
-  const Vec3 axis = b - a;
-  const float length = axis.norm();
-  const Basis basis = basisOf(length > 1e-6F ? Vec3(axis / length) : Vec3::UnitY());
-  const auto first = static_cast<uint32_t>(mesh.positions.size() / 3);
-  const int rings = 2 * (detail.rings + 1);
-  for (int ring = 0; ring < rings; ++ring) {
-    const bool atB = ring > detail.rings;
-    const int step = atB ? ring - detail.rings - 1 : ring - detail.rings;
-    const float angle = static_cast<float>(step) / static_cast<float>(detail.rings) *
-                        static_cast<float>(M_PI) / 2.0F;
-    for (int k = 0; k < detail.sides; ++k) {
-      const float turn = 2.0F * static_cast<float>(M_PI) * static_cast<float>(k) /
-                         static_cast<float>(detail.sides);
-      const Vec3 normal =
-          std::sin(angle) * basis.along +
-          std::cos(angle) * (std::cos(turn) * basis.side + std::sin(turn) * basis.up);
-      addVertex(mesh, (atB ? b : a) + (atB ? radiusB : radiusA) * normal, normal, colour);
-    }
-  }
-  const auto sides = static_cast<uint32_t>(detail.sides);
-  for (uint32_t ring = 0; ring + 1 < static_cast<uint32_t>(rings); ++ring) {
-    for (uint32_t k = 0; k < sides; ++k) {
-      const uint32_t next = (k + 1) % sides, here = first + ring * sides;
-      mesh.triangles.insert(mesh.triangles.end(),
-                            {here + k, here + next, here + sides + k, here + next,
-                             here + sides + next, here + sides + k});
-    }
-  }
-}
 }  // namespace
 
 BodyShape bodyShape(const Skeleton& skeleton, std::span<const Vec3> pose) {
@@ -132,32 +81,6 @@ Vec3 headCentre(const BodyShape& shape, std::span<const Vec3> pose) {
   const Vec3 along = head - pose[static_cast<size_t>(shape.neck)];
   const float length = along.norm();
   return length < 1e-6F ? head : Vec3(head + along * (0.55F * shape.headRadiusM / length));
-}
-
-void appendPose(Mesh& mesh, const BodyShape& shape, std::span<const Vec3> pose,
-                const Colour& colour, const MeshDetail& detail) {
-  const Colour lighter = mix(colour, {1, 1, 1, 1}, 0.28);
-  for (const Capsule& c : shape.capsules) {
-    appendCapsule(mesh, pose[static_cast<size_t>(c.from)], pose[static_cast<size_t>(c.to)],
-                  c.radiusFrom, c.radiusTo, c.leftSide ? lighter : colour, detail);
-  }
-  if (shape.head < 0) return;
-  const Vec3 centre = headCentre(shape, pose);
-  appendCapsule(mesh, centre, centre, shape.headRadiusM, shape.headRadiusM, colour,
-                {detail.sides + 4, detail.rings + 2});
-}
-
-std::vector<Vec3> poseAt(const Clip& clip, double timeS) {
-  const double at = std::clamp(timeS * clip.fps, 0.0, clip.frameCount() - 1.0);
-  const int before = static_cast<int>(at);
-  const int after = std::min(before + 1, clip.frameCount() - 1);
-  const auto share = static_cast<float>(at - before);
-  std::vector<Vec3> pose;
-  pose.reserve(static_cast<size_t>(clip.jointCount()));
-  for (int j = 0; j < clip.jointCount(); ++j) {
-    pose.emplace_back(clip.at(before, j) * (1.0F - share) + clip.at(after, j) * share);
-  }
-  return pose;
 }
 
 }  // namespace marey::render

@@ -1,13 +1,10 @@
-// Skeleton poses as meshes of tapered capsules: one mesh for any number of poses, so that a
-// picture with thousands of bones is drawn in one batch.
+// The look of a skeleton: tapered capsules from joint to joint, and a head.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "motion/clip.h"
-#include "render/base/colours.h"
 
 namespace marey::render {
 
@@ -30,29 +27,7 @@ struct BodyShape {
 /// metres), so that people and dogs of any size look alike.
 BodyShape bodyShape(const Skeleton& skeleton, std::span<const Vec3> pose);
 
-/// Triangles with per-vertex normals and colours.
-struct Mesh {
-  std::vector<float> positions;     ///< vertices x 3, metres
-  std::vector<float> normals;       ///< vertices x 3
-  std::vector<uint8_t> colours;     ///< vertices x 3, sRGB
-  std::vector<uint32_t> triangles;  ///< triangles x 3
-};
-
-/// How finely a capsule is divided.
-struct MeshDetail {
-  int sides = 12;  ///< around
-  int rings = 4;   ///< from the rim to the pole of each end
-};
-
-/// Adds one pose (joints, world metres).
-void appendPose(Mesh& mesh, const BodyShape& shape, std::span<const Vec3> pose,
-                const Colour& colour, const MeshDetail& detail = {});
-
 /// World position of the head ball's centre; only where shape.head >= 0.
 Vec3 headCentre(const BodyShape& shape, std::span<const Vec3> pose);
-
-/// Joint positions at a time, linear between frames; before the first and after the last frame
-/// those frames. Shape: joints.
-std::vector<Vec3> poseAt(const Clip& clip, double timeS);
 
 }  // namespace marey::render

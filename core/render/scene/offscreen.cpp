@@ -4,7 +4,6 @@
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <vtkFloatArray.h>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkObjectFactory.h>
 #include <vtkSmartPointer.h>
@@ -144,14 +143,11 @@ Rendered OffscreenWindow::render(vtkRenderer* renderer, int width, int height) {
   const SurfacelessContext::Current current(m_internals->context);
   vtkGenericOpenGLRenderWindow* window = m_internals->window;
   m_internals->draw(renderer, width, height);
-  Rendered result{width, height, {}, {}};
+  Rendered result{width, height, {}};
   auto colours = vtkSmartPointer<vtkUnsignedCharArray>::New();
   window->GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, colours);
-  auto depths = vtkSmartPointer<vtkFloatArray>::New();
-  window->GetZbufferData(0, 0, width - 1, height - 1, depths);
   const size_t pixels = static_cast<size_t>(width) * height;
   result.rgba.assign(colours->GetPointer(0), colours->GetPointer(0) + 4 * pixels);
-  result.depth.assign(depths->GetPointer(0), depths->GetPointer(0) + pixels);
   return result;
 }
 

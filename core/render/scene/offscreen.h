@@ -9,11 +9,10 @@
 
 namespace marey::render {
 
-/// One picture with its depths; rows from the bottom, as OpenGL stores them.
+/// One picture; rows from the bottom, as OpenGL stores them.
 struct Rendered {
   int width = 0, height = 0;
   std::vector<uint8_t> rgba;  ///< height x width x 4
-  std::vector<float> depth;   ///< height x width; 1 where nothing was drawn
 };
 
 /// A surfaceless EGL context and a window on it. The context is current only inside `render`, so

@@ -5,13 +5,21 @@
 #include <cmath>
 #include <ctime>
 
+#include <vtkActor.h>
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
+#include <vtkLight.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkSmartPointer.h>
+#include <vtkTubeFilter.h>
+
 #include "base/error.h"
 #include "motion/path.h"
 #include "motion/walker.h"
-#include "render/scene/floor.h"
-#include "render/scene/live_picture.h"
 #include "render/scene/offscreen.h"
-#include "render/scene/vtk_parts.h"
+#include "render/scene/scene_picture.h"
 
 namespace marey::render {
 
@@ -50,57 +58,75 @@ std::shared_ptr<const Clip> walkFrom(double x, double z, uint64_t seed) {
   return std::make_shared<const Clip>(walk(path, options).clip);
 }
 
-/// The plain way: floor as a picture, all bodies as one mesh built anew.
+void addLight(vtkRenderer* renderer, double x, double y, double z, double intensity) {
+  auto light = vtkSmartPointer<vtkLight>::New();
+  light->SetLightTypeToCameraLight();
+  light->SetPosition(x, y, z);
+  light->SetFocalPoint(0, 0, 0);
+  light->SetIntensity(intensity);
+  renderer->AddLight(light);
+}
+
+/// The plain way of VTK: all bones as lines with a tube filter, built anew for every frame.
 class Reference {
  public:
-  Reference(const RenderBenchSpec& spec, const std::vector<LiveMotion>& motions,
+  Reference(const RenderBenchSpec& spec, const std::vector<SceneMotion>& motions,
             const Camera& camera)
       : m_spec(spec), m_motions(motions) {
     m_renderer->SetBackground(1, 1, 1);
-    addLights(m_renderer);
-    FloorSpec floorSpec;
-    floorSpec.area = {1e9, 1e9, -1e9, -1e9};
-    for (const LiveMotion& m : motions) {
-      m_shapes.push_back(bodyShape(*m.clip->skeleton, m.clip->frame(0)));
-      for (int t = 0; t < m.clip->frameCount(); ++t)
-        floorSpec.area.include(m.clip->at(t, 0).x(), m.clip->at(t, 0).z());
-    }
-    const FloorImage floor = paintFloor(floorSpec);
-    m_renderer->AddActor(
-        floorActor(floor.image, floor.area.x0, floor.area.z0, floor.area.x1, floor.area.z1, 0.0));
-    applyCamera(camera, m_renderer->GetActiveCamera());
+    m_renderer->AutomaticLightCreationOff();
+    addLight(m_renderer, -0.55, 0.9, 0.8, 0.85);
+    addLight(m_renderer, 0.9, 0.1, 0.6, 0.30);
+    m_tubes->SetInputData(m_bones);
+    m_tubes->SetNumberOfSides(motions.size() > 100 ? 8 : 12);
+    m_tubes->SetRadius(0.03);
+    m_tubes->CappingOn();
+    auto mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
+    mapper->SetInputConnection(m_tubes->GetOutputPort());
+    auto actor = vtkSmartPointer<vtkActor>::New();
+    actor->SetMapper(mapper);
+    m_renderer->AddActor(actor);
+    vtkCamera* eye = m_renderer->GetActiveCamera();
+    eye->SetPosition(camera.eye.x(), camera.eye.y(), camera.eye.z());
+    eye->SetFocalPoint(camera.target.x(), camera.target.y(), camera.target.z());
+    eye->SetViewUp(camera.up.x(), camera.up.y(), camera.up.z());
+    eye->SetViewAngle(camera.fovY * 180.0 / M_PI);
   }
 
   void draw(double timeS) {
-    // As SceneRenderer does it.
-    const bool many = m_motions.size() * m_shapes.front().capsules.size() > 2500;
-    Mesh mesh;
-    for (size_t m = 0; m < m_motions.size(); ++m) {
-      appendPose(mesh, m_shapes[m], poseAt(*m_motions[m].clip, timeS), m_motions[m].colour,
-                 many ? MeshDetail{8, 3} : MeshDetail{12, 4});
+    auto points = vtkSmartPointer<vtkPoints>::New();
+    auto lines = vtkSmartPointer<vtkCellArray>::New();
+    for (const SceneMotion& motion : m_motions) {
+      const Clip& clip = *motion.clip;
+      const auto pose =
+          clip.frame(std::min(static_cast<int>(timeS * clip.fps), clip.frameCount() - 1));
+      const vtkIdType first = points->GetNumberOfPoints();
+      for (const Vec3& p : pose) points->InsertNextPoint(p.x(), p.y(), p.z());
+      for (const auto& [parent, child] : clip.skeleton->bones())
+        lines->InsertNextCell({first + parent, first + child});
     }
-    if (m_bodies) m_renderer->RemoveActor(m_bodies);
-    m_bodies = bodyActor(mesh);
-    m_renderer->AddActor(m_bodies);
+    m_bones->SetPoints(points);
+    m_bones->SetLines(lines);
+    m_renderer->ResetCameraClippingRange();
     m_window.draw(m_renderer, m_spec.width, m_spec.height);
   }
 
  private:
   RenderBenchSpec m_spec;
-  const std::vector<LiveMotion>& m_motions;
-  std::vector<BodyShape> m_shapes;
+  const std::vector<SceneMotion>& m_motions;
   OffscreenWindow m_window;
   vtkSmartPointer<vtkRenderer> m_renderer = vtkSmartPointer<vtkRenderer>::New();
-  vtkSmartPointer<vtkActor> m_bodies;
+  vtkSmartPointer<vtkPolyData> m_bones = vtkSmartPointer<vtkPolyData>::New();
+  vtkSmartPointer<vtkTubeFilter> m_tubes = vtkSmartPointer<vtkTubeFilter>::New();
 };
 
 double timeOf(int frame) {
   return std::fmod(frame / fps, walkS);
 }
 
-void measureLive(const RenderBenchSpec& spec, LiveScene& scene, RenderBenchResult& result,
-                 Progress progress) {
-  LivePicture picture;
+void measureScene(const RenderBenchSpec& spec, Scene& scene, RenderBenchResult& result,
+                  Progress progress) {
+  ScenePicture picture;
   // The first drawing compiles shaders.
   picture.draw(scene, spec.width, spec.height);
   const double begin = nowMs(), cpuBegin = cpuMs();
@@ -116,8 +142,8 @@ void measureLive(const RenderBenchSpec& spec, LiveScene& scene, RenderBenchResul
   result.lines = scene.cost().lines;
 }
 
-void measureReference(const RenderBenchSpec& spec, const LiveScene& scene,
-                      RenderBenchResult& result, Progress progress) {
+void measureReference(const RenderBenchSpec& spec, const Scene& scene, RenderBenchResult& result,
+                      Progress progress) {
   constexpr int most = 12;  // it is slow
   result.referenceFrames = std::min(most, spec.frames);
   Camera camera = scene.camera();
@@ -133,11 +159,11 @@ void measureReference(const RenderBenchSpec& spec, const LiveScene& scene,
 }
 }  // namespace
 
-std::vector<LiveMotion> benchMotions(int motions, uint64_t seed) {
-  std::vector<LiveMotion> result;
+std::vector<SceneMotion> benchMotions(int motions, uint64_t seed) {
+  std::vector<SceneMotion> result;
   const int columns = std::max(1, static_cast<int>(std::ceil(std::sqrt(1.6 * motions))));
   for (int m = 0; m < motions; ++m) {
-    LiveMotion motion;
+    SceneMotion motion;
     motion.clip = walkFrom(spacingM * (m % columns), spacingM * (m / columns),
                            seed * 1000003U + static_cast<uint64_t>(m));
     motion.colour = colourOf(m);
@@ -149,15 +175,15 @@ std::vector<LiveMotion> benchMotions(int motions, uint64_t seed) {
 RenderBenchResult benchRender(const RenderBenchSpec& spec, Progress& progress) {
   check(spec);
   RenderBenchResult result;
-  LiveScene scene;
+  Scene scene;
   progress.report(0.0, "walkers");
   scene.setMotions(benchMotions(spec.motions, spec.seed));
-  LiveOptions options;
+  SceneOptions options;
   options.detail = spec.detail;
   scene.setOptions(options);
-  scene.setView(LiveView::ThreeQuarter, spec.width, spec.height);
+  scene.setView(View::ThreeQuarter, spec.width, spec.height);
   result.joints = scene.motions().front().clip->jointCount();
-  measureLive(spec, scene, result, progress.part(0.1, 0.7));
+  measureScene(spec, scene, result, progress.part(0.1, 0.7));
   measureReference(spec, scene, result, progress.part(0.7, 1.0));
   return result;
 }

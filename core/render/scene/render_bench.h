@@ -1,8 +1,8 @@
-// How fast a moving scene is drawn, against the plain way of drawing it.
+// How fast a scene is drawn, against the plain way of drawing it.
 #pragma once
 
 #include "base/job.h"
-#include "render/scene/live_scene.h"
+#include "render/scene/scene.h"
 
 namespace marey::render {
 
@@ -26,10 +26,10 @@ struct RenderBenchResult {
 };
 
 /// The walkers of the benchmark, standing in rows and walking a few seconds.
-std::vector<LiveMotion> benchMotions(int motions, uint64_t seed);
+std::vector<SceneMotion> benchMotions(int motions, uint64_t seed);
 
-/// Draws every frame without a display, then some by the plain way: all bodies as one full mesh
-/// that is built anew for every frame, over a painted floor. Throws InputError unless there is at
+/// Draws every frame without a display, then some by the plain way of VTK: all bones as tubes that
+/// are built anew for every frame, without floor and shadows. Throws InputError unless there is at
 /// least one motion and frame and the size is 32x32 or more.
 RenderBenchResult benchRender(const RenderBenchSpec& spec, Progress& progress);
 

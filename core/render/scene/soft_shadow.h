@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 
 #include "motion/clip.h"
-#include "render/scene/floor.h"
+#include "render/scene/floor_area.h"
 
 namespace marey::render {
 

@@ -70,6 +70,8 @@ void main()
 )glsl";
 
 // strokePass: 0 draws what is solid, 1 lays down the depth of what is seen through, 2 draws that.
+// 3 and 4 do the same for solid limbs that show through what lies over them, nearer than all else:
+// their depths are a sixteenth. What lies before them keeps 0.45 of its opacity.
 inline constexpr const char* limbFragmentShader = R"glsl(
 //VTK::System::Dec
 //VTK::Output::Dec
@@ -90,7 +92,8 @@ void main()
   vec2 off = vec2(place.x - reached, place.y);
   float far2 = dot(off, off);
   float cover = clamp(0.5 + (radius - sqrt(far2)) / form.w, 0.0, 1.0);
-  if (cover < (strokePass == 1 ? 0.9 : 0.01)) {
+  bool depthOnly = strokePass == 1 || strokePass == 3;
+  if (cover < (depthOnly ? 0.9 : 0.01)) {
     discard;
   }
   off /= radius;
@@ -98,7 +101,13 @@ void main()
   // What is laid down lies a hair behind what is drawn, so that rounding cannot hide it. The soft
   // edge of a solid limb lies further back: it must not keep out the limb that it fades into.
   float bulge = strokePass == 0 && cover < 0.99 ? -2.0 : front;
-  gl_FragDepth = gl_FragCoord.z - depthPerM * bulge * radius + (strokePass == 1 ? 4.0e-7 : 0.0);
+  gl_FragDepth = gl_FragCoord.z - depthPerM * bulge * radius;
+  if (strokePass > 2) {
+    gl_FragDepth *= 0.0625;
+  }
+  if (depthOnly) {
+    gl_FragDepth += 4.0e-7;
+  }
   bool onShaft = off.x == 0.0;
   vec4 light = off.x * lightAlong + off.y * lightAcross +
                front * (onShaft ? lightShaft : lightFacing);
@@ -109,7 +118,7 @@ void main()
   gloss *= gloss;
   float bright = 0.52 + 0.09 * light.x + 0.46 * falls.x + 0.13 * falls.y;
   vec3 colour = ink.rgb * (bright * (0.8 + 0.2 * front)) + vec3(0.13 * gloss);
-  gl_FragData[0] = vec4(colour, strokePass == 1 ? 0.0 : cover * ink.a);
+  gl_FragData[0] = vec4(colour, depthOnly ? 0.0 : cover * ink.a * (strokePass == 4 ? 0.55 : 1.0));
 }
 )glsl";
 

@@ -57,6 +57,7 @@ struct Programs {
 Programs programsOf(StrokeLook look) {
   switch (look) {
     case StrokeLook::Limbs:
+    case StrokeLook::LimbsAgain:
       return {limbVertexShader, limbFragmentShader};
     case StrokeLook::Flat:
       return {flatVertexShader, flatFragmentShader};
@@ -144,6 +145,7 @@ struct StrokeBatch::Internals {
   vtkSmartPointer<vtkPoints> points = vtkSmartPointer<vtkPoints>::New();
 
   bool thin() const { return look == StrokeLook::Thin; }
+  bool round() const { return look == StrokeLook::Limbs || look == StrokeLook::LimbsAgain; }
   size_t corners() const { return thin() ? 2 : 4; }
   std::array<vtkFloatArray*, 3> arrays() { return {from, to, ink}; }
   std::vector<vtkSmartPointer<vtkPolyData>> parts;  ///< one per layer; all share the arrays
@@ -176,8 +178,7 @@ void StrokeBatch::Internals::addActor(vtkPolyData* part, int pass) {
   vtkShaderProperty* shaders = actor->GetShaderProperty();
   shaders->SetVertexShaderCode(programsOf(look).vertex);
   shaders->SetFragmentShaderCode(programsOf(look).fragment);
-  if (look == StrokeLook::Limbs)
-    shaders->GetFragmentCustomUniforms()->SetUniformi("strokePass", pass);
+  if (round()) shaders->GetFragmentCustomUniforms()->SetUniformi("strokePass", pass);
   if (thin()) actor->GetProperty()->SetLineWidth(rasterPixels);
   renderer->AddActor(actor);
   actors.push_back(actor);
@@ -188,8 +189,9 @@ void StrokeBatch::Internals::addPart() {
   part->SetPoints(points);
   for (vtkFloatArray* array : arrays()) part->GetPointData()->AddArray(array);
   parts.push_back(part);
-  if (layers > 0) addActor(part, 1);
-  addActor(part, layers > 0 ? 2 : 0);
+  const bool again = look == StrokeLook::LimbsAgain;
+  if (again || layers > 0) addActor(part, again ? 3 : 1);
+  addActor(part, again ? 4 : layers > 0 ? 2 : 0);
 }
 
 void StrokeBatch::Internals::resize(size_t count) {
@@ -284,7 +286,7 @@ void StrokeBatch::setView(const StrokeView& view) {
                                static_cast<float>(width), static_cast<float>(height)};
       vertex->SetUniform4f("strokeWindow", window);
     }
-    if (m_internals->look != StrokeLook::Limbs) continue;
+    if (!m_internals->round()) continue;
     vertex->SetUniformf("strokeDepth", static_cast<float>(depth));
     vertex->SetUniform3f("strokeKey", floats(key).data());
     vertex->SetUniform3f("strokeFill", floats(fill).data());

@@ -1,4 +1,4 @@
-// Private to the folder: every limb, line and ring of a moving scene as strokes that face the
+// Private to the folder: every limb, line and ring of a scene as strokes that face the
 // viewer. One stroke is two triangles (a thin one is a line) whose round shape, light and soft edge
 // are worked out per pixel: far fewer corners than a mesh of tubes, no facets, and smooth edges
 // without multisampling.
@@ -30,8 +30,9 @@ enum class StrokeKind : uint8_t {
 /// What a batch draws.
 enum class StrokeLook {
   Limbs,
-  Flat,  ///< all the others
-  Thin,  ///< Lines of at most thinLinePixels, for crowds: half the corners and fewer pixels
+  LimbsAgain,  ///< limbs once more over what has been laid over them, so that they stay visible
+  Flat,        ///< all the others
+  Thin,        ///< Lines of at most thinLinePixels, for crowds: half the corners and fewer pixels
 };
 /// The largest radius of a thin line.
 inline constexpr float thinLinePixels = 0.8F;

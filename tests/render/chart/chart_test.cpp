@@ -1,12 +1,17 @@
 #include "render/chart/chart.h"
 
+#include <algorithm>
 #include <cmath>
+#include <regex>
+#include <sstream>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include "base/error.h"
 #include "render/baseline.h"
+#include "render/chart/chart_frame.h"
 #include "render/chart/ticks.h"
 
 namespace marey::render {
@@ -172,10 +177,114 @@ TEST(Chart, AnSvgHasItsTextItsRecipeAndIdsOfItsOwn) {
   }
 }
 
-TEST(Chart, APdfIsOnePageOfTheRightSizeInPoints) {
-  const std::string pdf = drawPdf(single(sampleChart()), {400, 300}, {{"seed", "1"}});
+/// What the content stream of a PDF puts where, in points from the top left; after ISO 32000-1,
+/// 8.4 (the matrix of coordinates), 8.5 (paths) and 9.4 (texts).
+struct PdfMarks {
+  std::vector<Eigen::Vector2d> path, texts;  ///< corners of paths; starts of shown texts
+};
+
+std::string inflated(const std::string& data) {
+  std::string out(64 * data.size() + 4096, '\0');
+  uLongf size = out.size();
+  EXPECT_EQ(::uncompress(reinterpret_cast<Bytef*>(out.data()), &size,
+                         reinterpret_cast<const Bytef*>(data.data()), data.size()),
+            Z_OK);
+  out.resize(size);
+  return out;
+}
+
+/// The first stream of a file that shows text.
+std::string contentOf(const std::string& pdf) {
+  for (size_t at = pdf.find("\nstream\n"); at != std::string::npos;
+       at = pdf.find("\nstream\n", at + 1)) {
+    const size_t begin = at + 8;
+    if (pdf.substr(begin, 1) != "\x78") continue;  // not deflated
+    const std::string text = inflated(pdf.substr(begin, pdf.find("\nendstream", begin) - begin));
+    if (text.find("\nBT") != std::string::npos || text.find(" BT") != std::string::npos)
+      return text;
+  }
+  ADD_FAILURE() << "no page content";
+  return {};
+}
+
+PdfMarks marksOf(const std::string& content) {
+  const auto matrix = [](const std::vector<double>& v) {
+    Eigen::Affine2d m;
+    m.matrix() << v[0], v[2], v[4], v[1], v[3], v[5], 0, 0, 1;
+    return m;
+  };
+  PdfMarks out;
+  Eigen::Affine2d now = Eigen::Affine2d::Identity(), text = now;
+  std::vector<Eigen::Affine2d> saved;
+  std::vector<double> numbers;
+  std::istringstream in(content);
+  for (std::string word; in >> word;) {
+    char* end = nullptr;
+    const double number = std::strtod(word.c_str(), &end);
+    if (*end == '\0') {
+      numbers.push_back(number);
+      continue;
+    }
+    const auto point = [&](size_t i) {
+      return Eigen::Vector2d(now * Eigen::Vector2d(numbers[i], numbers[i + 1]));
+    };
+    if (word == "q") saved.push_back(now);
+    if (word == "Q") {
+      now = saved.back();
+      saved.pop_back();
+    }
+    if (word == "cm") now = now * matrix(numbers);
+    if (word == "Tm") text = now * matrix(numbers);
+    if (word == "m" || word == "l") out.path.push_back(point(0));
+    if (word == "c") out.path.push_back(point(4));
+    if (word == "re") {
+      out.path.push_back(point(0));
+      out.path.emplace_back(now *
+                            Eigen::Vector2d(numbers[0] + numbers[2], numbers[1] + numbers[3]));
+    }
+    if (word.ends_with("Tj") || word.ends_with("TJ")) out.texts.emplace_back(text.translation());
+    numbers.clear();
+  }
+  return out;
+}
+
+TEST(Chart, APdfIsOnePageWithEverythingOnIt) {
+  const ChartGrid grid = sampleGrid();
+  const ChartSize size{600, 500};
+  const std::string pdf = drawPdf(grid, size, {{"seed", "1"}});
   EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
-  EXPECT_NE(pdf.find("/MediaBox [ 0 0 300 225 ]"), std::string::npos);
+  const std::regex page("/Type /Page[^s]"), box(R"(/MediaBox \[ 0 0 450 375 \])"),
+      count("/Count 1\\b");
+  const auto found = [&](const std::regex& what) {
+    return std::distance(std::sregex_iterator(pdf.begin(), pdf.end(), what), std::sregex_iterator());
+  };
+  EXPECT_EQ(found(page), 1);
+  EXPECT_EQ(found(count), 1);
+  EXPECT_GE(found(box), 1);
+  const PdfMarks marks = marksOf(contentOf(pdf));
+  const auto onPage = [](const Eigen::Vector2d& p) {
+    return p.x() >= 0.0 && p.x() <= 450.0 && p.y() >= 0.0 && p.y() <= 375.0;
+  };
+  size_t points = 0;
+  for (const Chart& chart : grid.charts)
+    for (const Series& series : chart.series)
+      points += std::max(series.x.size(), series.low.size());
+  EXPECT_GE(marks.path.size(), points);
+  for (const auto& p : marks.path) EXPECT_TRUE(onPage(p)) << p.transpose();
+  // Every text starts where the chart says it stands, which is on the page.
+  const std::vector<ChartText> texts = textsOf(grid, size);
+  EXPECT_GT(texts.size(), 20U);
+  EXPECT_GE(marks.texts.size(), texts.size());
+  constexpr double perPixel = 0.75, slack = 1.0;
+  for (const ChartText& text : texts) {
+    EXPECT_TRUE(onPage({perPixel * text.left, perPixel * text.top})) << text.text;
+    EXPECT_TRUE(onPage({perPixel * text.right, perPixel * text.bottom})) << text.text;
+    EXPECT_TRUE(std::any_of(marks.texts.begin(), marks.texts.end(), [&](const auto& p) {
+      const double y = 375.0 - p.y();
+      return p.x() >= perPixel * text.left - slack && p.x() <= perPixel * text.right + slack &&
+             y >= perPixel * text.top - slack && y <= perPixel * text.bottom + slack;
+    })) << text.text;
+  }
 }
 
 TEST(Chart, ALineIsDrawnWhereItsDataAre) {

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "render/film/live_video.h"
-#include "render/live_test.h"
-#include "render/scene/live_picture.h"
-#include "render/scene/scene.h"
+#include "render/film/film.h"
+#include "render/scene/scene_picture.h"
+#include "render/scene_motion.h"
 #include "render/tiny_clip.h"
 
 namespace marey::render {
@@ -27,7 +26,7 @@ Clip longClip() {
 }
 
 /// A red motion of a second beside a blue one of three.
-std::vector<LiveMotion> liveMotions() {
+std::vector<SceneMotion> shortAndLong() {
   return {motionOf(tinyClip(11), red), motionOf(longClip(), blue)};
 }
 
@@ -40,10 +39,10 @@ TEST(Endings, AMotionIsWholeUntilItsLastFrameAndAPaleTraceSoonAfter) {
 }
 
 TEST(Endings, FadeInTheWindow) {
-  LiveScene scene;
-  scene.setMotions(liveMotions());
-  scene.setView(LiveView::Side, 320, 240);
-  LivePicture picture;
+  Scene scene;
+  scene.setMotions(shortAndLong());
+  scene.setView(View::Side, 320, 240);
+  ScenePicture picture;
   scene.setTime(1.0);
   const int whole = reddest(picture.take(scene, 320, 240));
   scene.setTime(2.0);
@@ -54,17 +53,15 @@ TEST(Endings, FadeInTheWindow) {
 }
 
 TEST(Endings, FadeInFilmsOfTheView) {
-  const LiveShot shot{.motions = liveMotions(), .options = {}, .view = LiveView::Side};
-  EXPECT_LT(reddest(drawLive(shot, 2.0, 320, 240)), 0.5 * reddest(drawLive(shot, 1.0, 320, 240)));
+  const Shot shot{.motions = shortAndLong(), .options = {}, .view = View::Side};
+  EXPECT_LT(reddest(drawShot(shot, 2.0, 320, 240)), 0.5 * reddest(drawShot(shot, 1.0, 320, 240)));
 }
 
-TEST(Endings, FadeInFilmsOfFigures) {
-  SceneSpec spec;
-  spec.motions = {{.clip = std::make_shared<const Clip>(tinyClip(11)), .system = {}, .colour = red},
-                  {.clip = std::make_shared<const Clip>(longClip()), .system = {}, .colour = blue}};
-  for (SceneMotion& motion : spec.motions) motion.contactMarks = false;
-  SceneRenderer renderer(spec, 320, 240);
-  EXPECT_LT(reddest(renderer.frame(2.0)), 0.5 * reddest(renderer.frame(1.0)));
+TEST(Endings, FadeInPrintedFilms) {
+  Shot shot = printed(shortAndLong());
+  shot.options.contactMarks = false;
+  ShotPicture picture(shot, 320, 240);
+  EXPECT_LT(reddest(picture.at(2.0)), 0.5 * reddest(picture.at(1.0)));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
-#include "render/film/video.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
+
+#include "render/film/film.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -9,11 +9,13 @@ extern "C" {
 }
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "render/film/gif_reader.h"
 #include "render/tiny_clip.h"
 
 namespace marey::render {
@@ -25,7 +27,7 @@ struct Decoded {
   AVRational rate{};
   int width = 0, height = 0, keyFrames = 0;
   std::string comment;
-  std::vector<int> luma;       ///< at the middle of each frame; blue of a GIF
+  std::vector<int> luma;       ///< at the middle of each frame; nothing true of a GIF
   std::vector<int64_t> times;  ///< in units of 1 / rate
 };
 
@@ -146,43 +148,79 @@ TEST_F(Video, AWebMHoldsTheSameFramesAsVp9) {
   }
 }
 
-TEST_F(Video, AGifHoldsTheSameFramesInExactColours) {
-  // 25 greys fit a palette: no dithering, no rounding. An odd width is no trouble here.
-  VideoWriter writer(m_folder / "grey.gif", {.width = 65, .height = 48, .fps = 20.0},
-                     {{"note", std::string(600, 'n')}});
-  for (int k = 0; k < 25; ++k) writer.add(Image(65, 48, grey(k / 24.0)));
-  EXPECT_FALSE(fs::exists(m_folder / "grey.gif")) << "nothing appears before it is whole";
-  writer.finish();
-  const Decoded video = decode(m_folder / "grey.gif");
-  EXPECT_EQ(video.rate.num, 20 * video.rate.den);
-  EXPECT_EQ(video.width, 65);
-  EXPECT_EQ(video.height, 48);
-  EXPECT_EQ(video.comment, R"({"note":")" + std::string(600, 'n') + R"("})");
-  ASSERT_EQ(video.luma.size(), 25U);
-  for (int k = 0; k < 25; ++k) {
-    EXPECT_EQ(video.times[static_cast<size_t>(k)] - video.times[0], k);
-    EXPECT_NEAR(video.luma[static_cast<size_t>(k)], 255.0 * k / 24.0, 1.0) << k;
+/// The largest and the mean difference of two pictures, over pixels and colours.
+struct Difference {
+  int most = 0;
+  double mean = 0.0;
+};
+
+Difference differenceOf(const Image& a, const Image& b) {
+  EXPECT_EQ(a.width, b.width);
+  EXPECT_EQ(a.pixels.size(), b.pixels.size());
+  Difference out;
+  for (size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i) {
+    const int off = std::abs(int{a.pixels[i]} - int{b.pixels[i]});
+    out.most = std::max(out.most, off);
+    out.mean += off / static_cast<double>(a.pixels.size());
   }
+  return out;
+}
+
+/// A square that moves over a ground in four quarters: few colours, none of them grey.
+Image quarters(int width, int height, int k) {
+  Image image(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const bool square = std::abs(x - 2 * k - 6) < 5 && std::abs(y - k - 8) < 5;
+      const Colour colours[] = {{0.9, 0.1, 0.2}, {0.1, 0.7, 0.3}, {0.2, 0.3, 0.9}, {0.8, 0.8, 0.1}};
+      const Colour& ground = colours[(2 * x >= width ? 1 : 0) + (2 * y >= height ? 2 : 0)];
+      const Colour c = square ? Colour{0.05 * k, 0.4, 1.0 - 0.05 * k} : ground;
+      const double rgb[] = {c.r, c.g, c.b};
+      for (int i = 0; i < 3; ++i)
+        image.at(x, y)[i] = static_cast<uint8_t>(std::lround(255.0 * rgb[i]));
+      image.at(x, y)[3] = 255;
+    }
+  return image;
+}
+
+TEST_F(Video, AGifHoldsTheSameFramesInExactColours) {
+  // 16 colours fit a palette: no dithering, no rounding. An odd width is no trouble here.
+  constexpr int count = 12;
+  VideoWriter writer(m_folder / "q.gif", {.width = 65, .height = 48, .fps = 20.0},
+                     {{"note", std::string(600, 'n')}});
+  for (int k = 0; k < count; ++k) writer.add(quarters(65, 48, k));
+  EXPECT_FALSE(fs::exists(m_folder / "q.gif")) << "nothing appears before it is whole";
+  writer.finish();
+  EXPECT_EQ(decode(m_folder / "q.gif").comment, R"({"note":")" + std::string(600, 'n') + R"("})");
+  const Gif gif = readGif(readFile(m_folder / "q.gif"));
+  EXPECT_EQ(gif.width, 65);
+  EXPECT_EQ(gif.height, 48);
+  EXPECT_TRUE(gif.endless);
+  EXPECT_EQ(gif.hundredths, std::vector<int>(count, 5));
+  ASSERT_EQ(gif.frames.size(), size_t{count});
+  for (int k = 0; k < count; ++k)
+    EXPECT_LE(differenceOf(gif.frames[static_cast<size_t>(k)], quarters(65, 48, k)).most, 1) << k;
 }
 
 TEST_F(Video, AGifWithMoreColoursThanAPaletteStaysClose) {
-  // 64 x 48 = 3072 colours of a smooth sheet, in each of two frames.
+  // 64 x 48 = 3072 colours of a smooth sheet, in each of two frames. A palette of 255 has twelve of
+  // them in a box: 4 by 3 steps of 4 or 5, so that its middle is at most 8 away from any, or 16
+  // where a box is twice as long; dithering adds 2.
   Image sheet(64, 48);
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x) {
-      uint8_t* pixel = sheet.at(x, y);
-      pixel[0] = static_cast<uint8_t>(4 * x);
-      pixel[1] = static_cast<uint8_t>(5 * y);
-      pixel[2] = 128;
+      const int colour[] = {4 * x, 5 * y, 128, 255};
+      for (int i = 0; i < 4; ++i) sheet.at(x, y)[i] = static_cast<uint8_t>(colour[i]);
     }
   VideoWriter writer(m_folder / "sheet.gif", {.width = 64, .height = 48, .fps = 10.0});
   writer.add(sheet);
   writer.add(greyFrame(0.5));
   writer.finish();
-  const Decoded video = decode(m_folder / "sheet.gif");
-  ASSERT_EQ(video.luma.size(), 2U);
-  EXPECT_NEAR(video.luma[0], 128, 24);
-  EXPECT_NEAR(video.luma[1], 128, 2);
+  const Gif gif = readGif(readFile(m_folder / "sheet.gif"));
+  ASSERT_EQ(gif.frames.size(), 2U);
+  EXPECT_LE(differenceOf(gif.frames[0], sheet).most, 18);
+  EXPECT_LE(differenceOf(gif.frames[0], sheet).mean, 4.0);
+  EXPECT_LE(differenceOf(gif.frames[1], greyFrame(0.5)).most, 18);
 }
 
 TEST_F(Video, FramesBecomeNumberedPictures) {
@@ -270,21 +308,17 @@ TEST_F(Video, WrongFormatsAndFramesAreRefused) {
   EXPECT_FALSE(fs::exists(m_folder / "x.mp4"));
 }
 
-SceneSpec tinyScene() {
-  SceneSpec scene;
-  SceneMotion motion;
-  motion.clip = std::make_shared<const Clip>(tinyClip(6));
-  scene.motions.push_back(motion);
-  return scene;
+Shot tinyShot() {
+  return printed({{.clip = std::make_shared<const Clip>(tinyClip(6))}});
 }
 
 TEST_F(Video, ASceneLastsAsLongAsItsLongestMotion) {
   Progress progress;
   const VideoFormat format{.width = 64, .height = 48, .fps = 20.0};
   // Six frames at 10 fps are 0.6 s, twelve frames at 20 fps.
-  EXPECT_EQ(writeSceneVideo(m_folder / "s.mp4", tinyScene(), format, {}, {}, progress), 12);
+  EXPECT_EQ(writeFilm(m_folder / "s.mp4", tinyShot(), format, {}, progress), 12);
   EXPECT_EQ(decode(m_folder / "s.mp4").luma.size(), 12U);
-  EXPECT_EQ(writeSceneVideo(m_folder / "s.gif", tinyScene(), format, {}, {}, progress), 12);
+  EXPECT_EQ(writeFilm(m_folder / "s.gif", tinyShot(), format, {}, progress), 12);
   EXPECT_EQ(decode(m_folder / "s.gif").luma.size(), 12U);
 }
 
@@ -293,8 +327,7 @@ TEST_F(Video, ACancelledVideoLeavesNoFile) {
   stop.request_stop();
   Progress progress({}, stop.get_token());
   for (const char* name : {"c.mp4", "c.webm", "c.gif", "c{frame}.png"})
-    EXPECT_THROW(writeSceneVideo(m_folder / name, tinyScene(), {.width = 64, .height = 48}, {}, {},
-                                 progress),
+    EXPECT_THROW(writeFilm(m_folder / name, tinyShot(), {.width = 64, .height = 48}, {}, progress),
                  CancelledError);
   EXPECT_TRUE(fs::is_empty(m_folder));
 }

@@ -156,10 +156,10 @@ TEST_F(PanelFiles, AMotionOfTheRangeIsCutOnlyWhenItIsWritten) {
 
 TEST_F(PanelFiles, ALiveShotIsWrittenWithItsSettings) {
   ExportRequest live = request(ExportFormat::PngFrames);
-  render::LiveShot shot;
+  render::Shot shot;
   for (const ExportItem& item : live.items)
     shot.motions.push_back({.clip = item.clip, .colour = item.colour});
-  shot.view = render::LiveView::Front;
+  shot.view = render::View::Front;
   live.shot = shot;
   live.shotSettings = {{"colour_by", "speed"}};
   Progress progress;

@@ -55,7 +55,7 @@ Autosave::Autosave(Workspace& workspace, QObject* parent)
   m_timer.setSingleShot(true);
   m_timer.setInterval(kAutosaveMs);
   connect(&m_timer, &QTimer::timeout, this, &Autosave::write);
-  connect(&m_workspace, &Workspace::documentChanged, this, [this] {
+  connect(&m_workspace.document(), &Document::changed, this, [this] {
     if (m_workspace.modified())
       m_timer.start();
     else
@@ -68,8 +68,8 @@ Autosave::~Autosave() {
 }
 
 bool Autosave::write() {
-  const Experiment e = m_workspace.document();
-  const Json copy = {{"file", m_workspace.file().toStdString()},
+  const Experiment e = m_workspace.toWrite();
+  const Json copy = {{"file", m_workspace.document().file().toStdString()},
                      {"folder", e.folder.string()},
                      {"experiment", toJson(e)}};
   try {

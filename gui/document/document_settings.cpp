@@ -34,7 +34,7 @@ class DocumentSettings : public QDialog {
 
  private:
   void buildText(QFormLayout& form) {
-    const Experiment& e = m_workspace.experiment();
+    const Experiment& e = m_workspace.document().experiment();
     m_title = new QLineEdit(QString::fromStdString(e.title), this);
     m_title->setObjectName(QStringLiteral("settingsTitle"));
     m_notes = new QPlainTextEdit(QString::fromStdString(e.notes), this);
@@ -51,7 +51,7 @@ class DocumentSettings : public QDialog {
   }
 
   void buildNumbers(QFormLayout& form) {
-    const Experiment& e = m_workspace.experiment();
+    const Experiment& e = m_workspace.document().experiment();
     m_fps = new NumberBox(this);
     m_fps->setObjectName(QStringLiteral("settingsFps"));
     m_fps->setRange(1.0, 1000.0);
@@ -81,7 +81,7 @@ class DocumentSettings : public QDialog {
   }
 
   void take() {
-    m_workspace.edit(tr("Document settings"), [this](Experiment& e) {
+    m_workspace.document().edit(tr("Document settings"), [this](Experiment& e) {
       e.title = m_title->text().toStdString();
       e.notes = m_notes->toPlainText().toStdString();
       e.feet = m_feet->text().trimmed().toStdString();

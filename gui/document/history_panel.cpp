@@ -14,9 +14,9 @@ class HistoryPanel : public QWidget {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(6, 6, 6, 6);
     layout->addWidget(m_list);
-    connect(&workspace, &Workspace::documentChanged, this, &HistoryPanel::refresh);
+    connect(&workspace.document(), &Document::changed, this, &HistoryPanel::refresh);
     connect(m_list, &QListWidget::currentRowChanged, this, [this](int row) {
-      if (!m_refreshing && row >= 0) m_workspace.goToEdit(static_cast<size_t>(row));
+      if (!m_refreshing && row >= 0) m_workspace.document().goToEdit(static_cast<size_t>(row));
     });
     refresh();
   }
@@ -24,7 +24,7 @@ class HistoryPanel : public QWidget {
  private:
   void refresh() {
     m_refreshing = true;
-    const auto& history = m_workspace.history();
+    const auto& history = m_workspace.document().history();
     m_list->clear();
     for (size_t i = 0; i < history.size(); ++i) {
       auto* item = new QListWidgetItem(QString::fromStdString(history.label(i)), m_list);

@@ -45,7 +45,7 @@ class LibraryPanel : public QWidget {
     });
     connect(m_view->selectionModel(), &QItemSelectionModel::selectionChanged, this,
             &LibraryPanel::takeSelection);
-    connect(&workspace, &Workspace::selectionChanged, this, &LibraryPanel::showSelection);
+    connect(&workspace.view(), &View::selectionChanged, this, &LibraryPanel::showSelection);
     connect(&m_model, &QAbstractItemModel::modelReset, this, [this] {
       expandSmall();
       showSelection();
@@ -103,18 +103,18 @@ class LibraryPanel : public QWidget {
 
   void takeSelection() {
     if (m_following) return;
-    Selection next{.joint = m_workspace.selection().joint};
+    Selection next{.joint = m_workspace.view().selection().joint};
     for (const QModelIndex& index : m_view->selectionModel()->selectedRows()) {
       const MotionId id = idAt(index);
       if (id.index >= 0) next.motions.insert(id);
     }
-    m_workspace.select(std::move(next));
+    m_workspace.view().select(std::move(next));
   }
 
   void showSelection() {
     m_following = true;
     QItemSelection rows;
-    for (const MotionId& id : m_workspace.selection().motions) {
+    for (const MotionId& id : m_workspace.view().selection().motions) {
       const QModelIndex index = m_filter.mapFromSource(m_model.indexOf(id));
       if (index.isValid()) rows.select(index, index);
     }
@@ -129,7 +129,7 @@ class LibraryPanel : public QWidget {
     QMenu menu;
     if (m_model.systemOf(index) >= 0)
       fillModelMenu(menu, static_cast<size_t>(m_model.systemOf(index)));
-    else if (const MotionGroup* group = m_workspace.group(m_model.idOf(index).group))
+    else if (const MotionGroup* group = m_workspace.motions().group(m_model.idOf(index).group))
       fillGroupMenu(menu, *group, m_model.sourcesOf(index));
     if (!menu.isEmpty()) menu.exec(m_view->viewport()->mapToGlobal(at));
   }
@@ -138,7 +138,8 @@ class LibraryPanel : public QWidget {
     menu.addAction(tr("Card and parameters…"), this,
                    [this, system] { showModelCard(m_workspace, system, this); });
     menu.addAction(tr("Remove model from the document"), this, [this, system] {
-      m_workspace.edit(tr("Remove model"), [=](Experiment& e) { removeSystem(e, system); });
+      m_workspace.document().edit(tr("Remove model"),
+                                  [=](Experiment& e) { removeSystem(e, system); });
     });
   }
 
@@ -154,13 +155,14 @@ class LibraryPanel : public QWidget {
   void fillGroupMenu(QMenu& menu, const MotionGroup& group,
                      const std::vector<std::string>& sources) {
     const int id = group.id;
-    const auto selected = m_workspace.selection().motions;
+    const auto selected = m_workspace.view().selection().motions;
     menu.addAction(tr("Show only the selected motions"), this,
-                   [this, selected] { m_workspace.showOnly(selected); })
+                   [this, selected] { m_workspace.motions().showOnly(selected); })
         ->setEnabled(!selected.empty());
     menu.addAction(tr("Show all of this group"), this,
-                   [this, id] { m_workspace.setVisible(id, true); });
-    menu.addAction(tr("Hide this group"), this, [this, id] { m_workspace.setVisible(id, false); });
+                   [this, id] { m_workspace.motions().setVisible(id, true); });
+    menu.addAction(tr("Hide this group"), this,
+                   [this, id] { m_workspace.motions().setVisible(id, false); });
     menu.addSeparator();
     addUse(menu, {selected.begin(), selected.end()}, tr("Use the selected motions"),
            tr("Leave the selected motions out"));
@@ -175,22 +177,24 @@ class LibraryPanel : public QWidget {
                                     .arg(QString::fromStdString(sources.front()))
                               : tr("Remove these %1 sources from the document").arg(sources.size());
       menu.addAction(text, this, [this, sources] {
-        m_workspace.edit(tr("Remove source"), [&](Experiment& e) {
+        m_workspace.document().edit(tr("Remove source"), [&](Experiment& e) {
           for (const std::string& source : sources) removeNatural(e, source);
         });
       });
       return;
     }
     if (group.recipe) {
-      menu.addAction(tr("Sample again"), this,
-                     [this, recipe = *group.recipe, id] { m_workspace.sample(recipe, id); });
+      menu.addAction(tr("Sample again"), this, [this, recipe = *group.recipe, id] {
+        m_workspace.sampling().sample(recipe, id);
+      });
       QAction* pin = menu.addAction(tr("Pin"), this, [this, id, pinned = group.pinned] {
-        m_workspace.setPinned(id, !pinned);
+        m_workspace.motions().setPinned(id, !pinned);
       });
       pin->setCheckable(true);
       pin->setChecked(group.pinned);
     }
-    menu.addAction(tr("Remove these motions"), this, [this, id] { m_workspace.setAside(id); });
+    menu.addAction(tr("Remove these motions"), this,
+                   [this, id] { m_workspace.motions().setAside(id); });
   }
 
   Workspace& m_workspace;

@@ -30,14 +30,14 @@ class CardDialog : public QDialog {
   CardDialog(Workspace& workspace, size_t system, const ModelInfo& info, const ModelAdvice& advice,
              QWidget* parent)
       : QDialog(parent) {
-    const ExperimentSystem& shown = workspace.experiment().systems[system];
+    const ExperimentSystem& shown = workspace.document().experiment().systems[system];
     setObjectName(QStringLiteral("modelCard"));
     setAttribute(Qt::WA_DeleteOnClose);
     setWindowTitle(tr("Model %1").arg(QString::fromStdString(shown.name)));
     auto* text = new QTextBrowser(this);
     text->setObjectName(QStringLiteral("modelCardText"));
     text->setOpenExternalLinks(true);
-    text->setMarkdown(modelCardText(info, advice, workspace.modelFile(shown)));
+    text->setMarkdown(modelCardText(info, advice, workspace.document().modelFile(shown)));
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close, this);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::close);
     const auto advised = advice.temperature;
@@ -46,9 +46,9 @@ class CardDialog : public QDialog {
                                      QDialogButtonBox::ActionRole);
       use->setObjectName(QStringLiteral("modelCardUse"));
       connect(use, &QPushButton::clicked, this, [&workspace, name = shown.name, t = *advised, use] {
-        const int at = workspace.systemIndex(name);
+        const int at = workspace.document().systemIndex(name);
         if (at >= 0)
-          workspace.edit(tr("Temperature"), [=](Experiment& e) {
+          workspace.document().edit(tr("Temperature"), [=](Experiment& e) {
             e.systems[static_cast<size_t>(at)].temperature = t;
           });
         use->setEnabled(false);
@@ -89,20 +89,22 @@ QString modelCardText(const ModelInfo& info, const ModelAdvice& advice, const st
 }
 
 void showModelCard(Workspace& workspace, size_t system, QWidget* parent) {
-  if (system >= workspace.experiment().systems.size()) return;
-  const std::string file = workspace.modelFile(workspace.experiment().systems[system]);
+  if (system >= workspace.document().experiment().systems.size()) return;
+  const std::string file =
+      workspace.document().modelFile(workspace.document().experiment().systems[system]);
   auto info = std::make_shared<ModelInfo>();
   auto advice = std::make_shared<ModelAdvice>();
   const QPointer<QWidget> owner(parent);
   workspace.jobs().start(
       Lane::Previews, QObject::tr("Reading the model's card"),
       [&workspace, file, info, advice](Progress&) {
-        *info = workspace.model(file)->info();
+        *info = workspace.models().model(file)->info();
         *advice = modelAdvice(file);
       },
       [&workspace, file, info, advice, system, owner] {
-        const auto& systems = workspace.experiment().systems;
-        if (!owner || system >= systems.size() || workspace.modelFile(systems[system]) != file)
+        const auto& systems = workspace.document().experiment().systems;
+        if (!owner || system >= systems.size() ||
+            workspace.document().modelFile(systems[system]) != file)
           return;
         (new CardDialog(workspace, system, *info, *advice, owner))->show();
       },

@@ -65,15 +65,15 @@ std::string placeOf(const std::string& source) {
 
 MotionTree::MotionTree(Workspace& workspace, QObject* parent)
     : QAbstractItemModel(parent), m_workspace(workspace) {
-  connect(&workspace, &Workspace::motionsChanged, this, &MotionTree::follow);
-  connect(&workspace, &Workspace::documentChanged, this, &MotionTree::follow);
-  connect(&workspace, &Workspace::visibilityChanged, this, &MotionTree::refreshColumn);
+  connect(&workspace.motions(), &MotionGroups::changed, this, &MotionTree::follow);
+  connect(&workspace.document(), &Document::changed, this, &MotionTree::follow);
+  connect(&workspace.motions(), &MotionGroups::visibilityChanged, this, &MotionTree::refreshColumn);
   follow();
 }
 
 std::vector<MotionTree::Branch> MotionTree::branchesNow() const {
   std::vector<Branch> out;
-  for (const MotionGroup& group : m_workspace.groups()) {
+  for (const MotionGroup& group : m_workspace.motions().groups()) {
     const int motions = static_cast<int>(group.motions.size());
     const bool severalSources =
         motions > 0 && group.motions.front().source != group.motions.back().source;
@@ -88,7 +88,7 @@ std::vector<MotionTree::Branch> MotionTree::branchesNow() const {
       ++out.back().rows;
     }
   }
-  const int systems = static_cast<int>(m_workspace.experiment().systems.size());
+  const int systems = static_cast<int>(m_workspace.document().experiment().systems.size());
   if (systems > 0) out.push_back({kModels, {}, 0, systems});
   return out;
 }
@@ -156,7 +156,7 @@ std::string MotionTree::sourceOf(const QModelIndex& index) const {
 
 std::vector<std::string> MotionTree::sourcesOf(const QModelIndex& index) const {
   const Branch* branch = branchOf(index);
-  const MotionGroup* group = branch ? m_workspace.group(branch->group) : nullptr;
+  const MotionGroup* group = branch ? m_workspace.motions().group(branch->group) : nullptr;
   std::vector<std::string> out;
   if (group == nullptr || !group->natural()) return out;
   const bool whole = index.internalId() == kBranchLevel;
@@ -216,13 +216,13 @@ QVariant MotionTree::data(const QModelIndex& index, int role) const {
   const int system = systemOf(index);
   if (system >= 0) return modelData(static_cast<size_t>(system), index.column(), role);
   const MotionId id = idOf(index);
-  const MotionGroup* group = m_workspace.group(id.group);
+  const MotionGroup* group = m_workspace.motions().group(id.group);
   if (group == nullptr || id.index >= static_cast<int>(group->motions.size())) return {};
   return motionData(*group, static_cast<size_t>(id.index), index.column(), role);
 }
 
 QVariant MotionTree::branchData(const Branch& branch, int column, int role) const {
-  const MotionGroup* group = m_workspace.group(branch.group);
+  const MotionGroup* group = m_workspace.motions().group(branch.group);
   if (column == Name && role == Qt::FontRole) {
     QFont font;
     font.setBold(true);
@@ -261,8 +261,8 @@ std::vector<std::string> MotionTree::remarksOn(const Branch& branch,
   if (!group.natural()) return out;
   std::set<std::string> sources;
   for (const MotionId& id : motionsOf(branch))
-    if (const Motion* motion = m_workspace.motion(id)) sources.insert(motion->source);
-  for (const auto& [source, inputs] : m_workspace.naturalInputs()) {
+    if (const Motion* motion = m_workspace.motions().motion(id)) sources.insert(motion->source);
+  for (const auto& [source, inputs] : m_workspace.natural().inputs()) {
     if (!sources.contains(source) || inputs.missingText().empty()) continue;
     for (std::string& remark : inputs.remarks()) out.push_back(std::move(remark));
   }
@@ -280,13 +280,13 @@ QVariant MotionTree::state(const Branch& branch, const MotionGroup& group,
 }
 
 QVariant MotionTree::modelData(size_t index, int column, int role) const {
-  const auto& systems = m_workspace.experiment().systems;
+  const auto& systems = m_workspace.document().experiment().systems;
   if (column != Name || index >= systems.size()) return {};
   if (role == Qt::DisplayRole) return QString::fromStdString(systems[index].name);
   if (role == Qt::DecorationRole) return swatch(render::colourOf(static_cast<int>(index)));
   if (role == Qt::ToolTipRole)
     return tr("%1\nDouble-click: card and parameters")
-        .arg(QString::fromStdString(m_workspace.modelFile(systems[index])));
+        .arg(QString::fromStdString(m_workspace.document().modelFile(systems[index])));
   return {};
 }
 
@@ -323,7 +323,7 @@ QVariant MotionTree::motionData(const MotionGroup& group, size_t index, int colu
 
 std::optional<std::string> MotionTree::scoreUnit() const {
   std::optional<std::string> out;
-  for (const MotionGroup& group : m_workspace.groups())
+  for (const MotionGroup& group : m_workspace.motions().groups())
     for (const Motion& motion : group.motions) {
       if (!motion.score || motion.score->unit.empty()) continue;
       if (out && *out != motion.score->unit) return std::nullopt;
@@ -348,7 +348,7 @@ bool MotionTree::setData(const QModelIndex& index, const QVariant& value, int ro
   if (index.column() == Use)
     m_workspace.setUsed(motions, on);
   else
-    m_workspace.setVisible(motions, on);
+    m_workspace.motions().setVisible(motions, on);
   return true;
 }
 

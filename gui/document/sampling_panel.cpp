@@ -42,8 +42,8 @@ class SamplingPanel : public QWidget {
     layout->addWidget(m_speed);
     layout->addStretch(1);
     connectEdits();
-    connect(&workspace, &Workspace::documentChanged, this, &SamplingPanel::refresh);
-    connect(&workspace, &Workspace::currentPathChanged, this, &SamplingPanel::refresh);
+    connect(&workspace.document(), &Document::changed, this, &SamplingPanel::refresh);
+    connect(&workspace.document(), &Document::currentPathChanged, this, &SamplingPanel::refresh);
     connect(&workspace.jobs(), &JobQueue::changed, this, &SamplingPanel::refreshButtons);
     refresh();
   }
@@ -62,13 +62,15 @@ class SamplingPanel : public QWidget {
     connect(m_systems, &QTableWidget::currentCellChanged, this, [this] { refreshOptions(); });
     connect(m_systems, &QTableWidget::cellChanged, this, [this](int row, int column) {
       if (m_refreshing || column != 0) return;
-      const std::string& before = m_workspace.experiment().systems.at(size_t(row)).name;
-      m_workspace.setSampled(before, m_systems->item(row, 0)->checkState() == Qt::Checked);
+      const std::string& before = m_workspace.document().experiment().systems.at(size_t(row)).name;
+      m_workspace.sampling().setSampled(before,
+                                        m_systems->item(row, 0)->checkState() == Qt::Checked);
       refreshButtons();
       const std::string name = m_systems->item(row, 0)->text().toStdString();
       if (name == before) return;
-      m_workspace.edit(tr("Rename model"),
-                       [&](Experiment& e) { renameSystem(e, static_cast<size_t>(row), name); });
+      m_workspace.document().edit(tr("Rename model"), [&](Experiment& e) {
+        renameSystem(e, static_cast<size_t>(row), name);
+      });
       refresh();  // a refused name goes back
     });
     return m_systems;
@@ -123,13 +125,13 @@ class SamplingPanel : public QWidget {
     m_cancel->setObjectName(QStringLiteral("sampleCancel"));
     auto* remove = new QPushButton(tr("Remove model"), this);
     remove->setObjectName(QStringLiteral("removeModel"));
-    connect(m_run, &QPushButton::clicked, &m_workspace, &Workspace::sampleCurrentPath);
-    connect(m_cancel, &QPushButton::clicked, &m_workspace, &Workspace::cancelSampling);
+    connect(m_run, &QPushButton::clicked, &m_workspace.sampling(), &Sampling::sampleCurrentPath);
+    connect(m_cancel, &QPushButton::clicked, &m_workspace.sampling(), &Sampling::cancel);
     connect(remove, &QPushButton::clicked, this, [this] {
       const int row = m_systems->currentRow();
       if (row < 0) return;
-      m_workspace.edit(tr("Remove model"),
-                       [row](Experiment& e) { removeSystem(e, static_cast<size_t>(row)); });
+      m_workspace.document().edit(
+          tr("Remove model"), [row](Experiment& e) { removeSystem(e, static_cast<size_t>(row)); });
     });
     auto* buttons = new QHBoxLayout;
     buttons->addWidget(m_run, 1);
@@ -144,15 +146,15 @@ class SamplingPanel : public QWidget {
     });
     connect(m_seed, &QLineEdit::editingFinished, this, [this] { takeSeed(m_seed->text()); });
     connect(m_start, qOverload<int>(&QComboBox::activated), this, [this](int index) {
-      const auto path = static_cast<size_t>(m_workspace.currentPath());
+      const auto path = static_cast<size_t>(m_workspace.document().currentPath());
       change(tr("Start of the motion"),
              [=](Experiment& e) { e.paths.at(path).startFromClip = index == 1; });
     });
     connect(m_path, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
-      if (!m_refreshing) m_workspace.setCurrentPath(index);
+      if (!m_refreshing) m_workspace.document().setCurrentPath(index);
     });
     connect(m_seconds, qOverload<double>(&QDoubleSpinBox::valueChanged), this, [this](double s) {
-      const auto path = static_cast<size_t>(m_workspace.currentPath());
+      const auto path = static_cast<size_t>(m_workspace.document().currentPath());
       change(tr("Length of path"), [=](Experiment& e) { setPathSeconds(e, path, s); });
     });
   }
@@ -223,19 +225,19 @@ class SamplingPanel : public QWidget {
   }
 
   void change(const QString& label, const std::function<void(Experiment&)>& edit) {
-    if (!m_refreshing) m_workspace.edit(label, edit, true);
+    if (!m_refreshing) m_workspace.document().edit(label, edit, true);
   }
 
   void refresh() {
     m_refreshing = true;
-    const Experiment& e = m_workspace.experiment();
+    const Experiment& e = m_workspace.document().experiment();
     m_count->display(e.samples);
     // What is being typed is not finished yet.
     if (!m_seed->hasFocus() || !m_seed->isModified()) m_seed->setText(QString::number(e.seed));
     m_path->clear();
     for (const ExperimentPath& path : e.paths) m_path->addItem(QString::fromStdString(path.name));
-    m_path->setCurrentIndex(m_workspace.currentPath());
-    const auto index = static_cast<size_t>(m_workspace.currentPath());
+    m_path->setCurrentIndex(m_workspace.document().currentPath());
+    const auto index = static_cast<size_t>(m_workspace.document().currentPath());
     m_seconds->setEnabled(index < e.paths.size());
     if (index < e.paths.size()) m_seconds->display(e.paths[index].seconds);
     m_start->setEnabled(index < e.paths.size() && e.paths[index].followsClip());
@@ -246,7 +248,7 @@ class SamplingPanel : public QWidget {
   }
 
   void refreshSystems() {
-    const auto& systems = m_workspace.experiment().systems;
+    const auto& systems = m_workspace.document().experiment().systems;
     m_systems->setRowCount(static_cast<int>(systems.size()));
     for (int row = 0; row < static_cast<int>(systems.size()); ++row) {
       const ExperimentSystem& system = systems[static_cast<size_t>(row)];
@@ -255,11 +257,12 @@ class SamplingPanel : public QWidget {
       QPixmap swatch(12, 12);
       swatch.fill(QColor::fromRgbF(c.r, c.g, c.b));
       name->setIcon(swatch);
-      name->setCheckState(m_workspace.sampled(system.name) ? Qt::Checked : Qt::Unchecked);
+      name->setCheckState(m_workspace.sampling().sampled(system.name) ? Qt::Checked
+                                                                      : Qt::Unchecked);
       name->setToolTip(tr("Ticked models are sampled"));
       m_systems->setItem(row, 0, name);
       auto* file = new QTableWidgetItem(QString::fromStdString(system.model));
-      file->setToolTip(QString::fromStdString(m_workspace.modelFile(system)));
+      file->setToolTip(QString::fromStdString(m_workspace.document().modelFile(system)));
       file->setFlags(file->flags() & ~Qt::ItemIsEditable);
       m_systems->setItem(row, 2, file);
       auto* box = static_cast<NumberBox*>(m_systems->cellWidget(row, 1));
@@ -283,12 +286,12 @@ class SamplingPanel : public QWidget {
   }
 
   void refreshButtons() {
-    const Experiment& e = m_workspace.experiment();
+    const Experiment& e = m_workspace.document().experiment();
     const bool any = std::any_of(e.systems.begin(), e.systems.end(), [this](const auto& system) {
-      return m_workspace.sampled(system.name);
+      return m_workspace.sampling().sampled(system.name);
     });
     m_run->setEnabled(any && !e.paths.empty());
-    m_cancel->setEnabled(m_workspace.sampling());
+    m_cancel->setEnabled(m_workspace.sampling().active());
     m_speed->setText(e.systems.empty() ? tr("Add a model (Ctrl+M) or drop its file on the window.")
                      : e.paths.empty() ? tr("Add a path in the path editor.")
                      : !any            ? tr("Tick a model to sample it.")

@@ -20,7 +20,6 @@
 #include <QVBoxLayout>
 
 #include "gui/exchange/export_picture_form.h"
-#include "gui/workspace/contact_tolerance.h"
 
 namespace marey::gui {
 namespace {
@@ -28,11 +27,10 @@ namespace fs = std::filesystem;
 
 class ExportDialog : public QDialog {
  public:
-  ExportDialog(Workspace& workspace, QWidget* parent)
+  ExportDialog(Workspace& workspace, std::shared_ptr<const ShownScene> scene, QWidget* parent)
       : QDialog(parent),
         m_workspace(workspace),
-        m_picture(new ExportPictureForm(
-            parent != nullptr ? parent->window()->findChild<SceneView*>() : nullptr, this)) {
+        m_picture(new ExportPictureForm(std::move(scene), this)) {
     setObjectName(QStringLiteral("exportDialog"));
     setWindowTitle(tr("Export motions"));
     setAttribute(Qt::WA_DeleteOnClose);
@@ -42,9 +40,10 @@ class ExportDialog : public QDialog {
     layout->addLayout(buildWhere());
     layout->addWidget(buildResult());
     layout->addLayout(buildButtons());
-    connect(&workspace, &Workspace::selectionChanged, this, &ExportDialog::refreshItems);
-    connect(&workspace, &Workspace::visibilityChanged, this, &ExportDialog::refreshItems);
-    connect(&workspace, &Workspace::rangeChanged, this, &ExportDialog::refreshItems);
+    connect(&workspace.view(), &View::selectionChanged, this, &ExportDialog::refreshItems);
+    connect(&workspace.motions(), &MotionGroups::visibilityChanged, this,
+            &ExportDialog::refreshItems);
+    connect(&workspace.view(), &View::rangeChanged, this, &ExportDialog::refreshItems);
     connect(&workspace.jobs(), &JobQueue::changed, this, &ExportDialog::refreshProgress);
     connect(&workspace.jobs(), &JobQueue::ended, this, [this](int id, bool successful) {
       if (id == m_job) finish(successful);
@@ -53,8 +52,8 @@ class ExportDialog : public QDialog {
             [this](const QString& title, const QString& error) {
               if (title == m_title) m_done->setText(tr("Nothing was written. %1").arg(error));
             });
-    m_selected->setChecked(!workspace.selection().motions.empty());
-    m_visible->setChecked(workspace.selection().motions.empty());
+    m_selected->setChecked(!workspace.view().selection().motions.empty());
+    m_visible->setChecked(workspace.view().selection().motions.empty());
     refreshItems();
     resize(520, 560);
   }
@@ -177,13 +176,13 @@ class ExportDialog : public QDialog {
   ExportFormat format() const { return static_cast<ExportFormat>(m_format->currentData().toInt()); }
 
   std::vector<MotionId> motions() const {
-    const auto& selected = m_workspace.selection().motions;
+    const auto& selected = m_workspace.view().selection().motions;
     if (m_selected->isChecked()) return {selected.begin(), selected.end()};
-    return m_workspace.visibleMotions();
+    return m_workspace.motions().visibleMotions();
   }
 
   std::optional<TimeRange> range() const {
-    return m_range->isChecked() ? m_workspace.range() : std::nullopt;
+    return m_range->isChecked() ? m_workspace.view().range() : std::nullopt;
   }
 
   /// What is written where; the pictures' looks are filled in when it is asked for.
@@ -193,21 +192,22 @@ class ExportDialog : public QDialog {
             .name = m_name->text().toStdString(),
             .items = m_items,
             .range = range(),
-            .contacts = ContactTolerance::of(m_workspace).rule()};
+            .contacts = m_workspace.contactRule()};
   }
 
   /// Names of the motions: worked out when these change, not at every letter of a folder's name.
   void refreshItems() {
-    m_items = exportItems(m_workspace.experiment(), m_workspace.groups(), motions(), range());
+    m_items = exportItems(m_workspace.document().experiment(), m_workspace.motions().groups(),
+                          motions(), range());
     refresh();
   }
 
   void refresh() {
-    const auto selected = static_cast<int>(m_workspace.selection().motions.size());
-    const auto visible = static_cast<int>(m_workspace.visibleMotions().size());
+    const auto selected = static_cast<int>(m_workspace.view().selection().motions.size());
+    const auto visible = static_cast<int>(m_workspace.motions().visibleMotions().size());
     m_selected->setText(tr("Selected (%1)").arg(selected));
     m_visible->setText(tr("All visible (%1)").arg(visible));
-    m_range->setEnabled(m_workspace.range().has_value());
+    m_range->setEnabled(m_workspace.view().range().has_value());
     m_picture->setVisible(isPicture(format()));
     m_picture->setFormat(format());
     m_name->setEnabled(isPicture(format()));
@@ -244,7 +244,7 @@ class ExportDialog : public QDialog {
     // The document may have been edited since the motions were listed.
     refreshItems();
     ExportRequest wanted = request();
-    wanted.experimentHash = experimentHash(m_workspace.experiment());
+    wanted.experimentHash = experimentHash(m_workspace.document().experiment());
     if (isPicture(wanted.format)) m_picture->fill(wanted, m_selected->isChecked());
     if (!mayReplace(wanted)) return;
     QSettings().setValue(QStringLiteral("exportFolder"), m_folder->text());
@@ -313,9 +313,8 @@ class ExportDialog : public QDialog {
 
 }  // namespace
 
-void saveScenePicture(Workspace& workspace, QWidget* parent) {
-  auto* view = parent->window()->findChild<SceneView*>();
-  if (view == nullptr) return;
+void saveScenePicture(Workspace& workspace, const ShownScene& scene, QWidget* parent) {
+  if (scene.width == 0) return;  // never drawn
   const QString last = QSettings().value(QStringLiteral("exportFolder")).toString();
   const QString file = QFileDialog::getSaveFileName(
       parent, QObject::tr("Picture of the 3D view"),
@@ -324,16 +323,16 @@ void saveScenePicture(Workspace& workspace, QWidget* parent) {
   if (file.isEmpty()) return;
   fs::path path = file.toStdString();
   if (path.extension() != ".png") path += ".png";
-  const double ratio = view->devicePixelRatioF();
-  ExportRequest request{.format = ExportFormat::Still,
-                        .items = exportItems(workspace.experiment(), workspace.groups(),
-                                             workspace.visibleMotions(), std::nullopt),
-                        .range = std::nullopt,
-                        .experimentHash = experimentHash(workspace.experiment()),
-                        .width = static_cast<int>(ratio * view->width()),
-                        .height = static_cast<int>(ratio * view->height())};
-  copyScene(*view, request, false);
-  addLegend(*view, request);
+  ExportRequest request{
+      .format = ExportFormat::Still,
+      .items = exportItems(workspace.document().experiment(), workspace.motions().groups(),
+                           workspace.motions().visibleMotions(), std::nullopt),
+      .range = std::nullopt,
+      .experimentHash = experimentHash(workspace.document().experiment()),
+      .width = scene.width,
+      .height = scene.height};
+  copyScene(scene, request, false);
+  addLegend(scene, request);
   workspace.jobs().start(
       Lane::Exports, QObject::tr("Picture of the 3D view"), [request, path](Progress&) {
         render::writePng(
@@ -342,8 +341,9 @@ void saveScenePicture(Workspace& workspace, QWidget* parent) {
       });
 }
 
-void showExportDialog(Workspace& workspace, QWidget* parent) {
-  (new ExportDialog(workspace, parent))->show();
+void showExportDialog(Workspace& workspace, std::shared_ptr<const ShownScene> scene,
+                      QWidget* parent) {
+  (new ExportDialog(workspace, std::move(scene), parent))->show();
 }
 
 }  // namespace marey::gui

@@ -5,6 +5,7 @@
 #include <QLabel>
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "gui/common/number_box.h"
 #include "gui/scene/scene_legend.h"
@@ -32,9 +33,9 @@ const char* nameOf(ColourBy colours) {
 
 }  // namespace
 
-ExportPictureForm::ExportPictureForm(SceneView* scene, QWidget* parent)
+ExportPictureForm::ExportPictureForm(std::shared_ptr<const ShownScene> scene, QWidget* parent)
     : QGroupBox(tr("Picture"), parent),
-      m_scene(scene),
+      m_scene(std::move(scene)),
       m_look(new QComboBox(this)),
       m_width(pixels("exportWidth", 1280)),
       m_height(pixels("exportHeight", 720)),
@@ -54,15 +55,15 @@ ExportPictureForm::ExportPictureForm(SceneView* scene, QWidget* parent)
       {m_legend, "exportLegend"}, {m_trail, "exportTrail"},
       {m_strobe, "exportStrobe"}, {m_path, "exportPath"}};
   for (const auto& [widget, name] : names) widget->setObjectName(QLatin1String(name));
-  if (scene != nullptr) m_look->addItem(tr("As in the 3D view"), true);
+  if (m_scene) m_look->addItem(tr("As in the 3D view"), true);
   m_look->addItem(tr("Figure with exposures, as marey render draws it"), false);
   m_fps->setRange(1.0, kMostFps);
   m_fps->setDecimals(1);
   m_fps->setValue(30.0);
   m_camera->addItems({tr("Fixed"), tr("Following the figures")});
-  if (scene != nullptr) {
-    m_camera->setCurrentIndex(scene->scene().follow() ? 1 : 0);
-    m_dark->setChecked(scene->scene().options().tone == render::Tone::Dark);
+  if (m_scene) {
+    m_camera->setCurrentIndex(m_scene->follow ? 1 : 0);
+    m_dark->setChecked(m_scene->options.tone == render::Tone::Dark);
   }
   m_legend->setChecked(true);
   m_strobe->setRange(0.05, 60.0);
@@ -185,12 +186,11 @@ void ExportPictureForm::fillShot(ExportRequest& request, bool apart) const {
   if (m_legend->isChecked()) addLegend(*m_scene, request);
 }
 
-void copyScene(SceneView& view, ExportRequest& request, bool apart) {
-  const render::Scene& scene = view.scene();
+void copyScene(const ShownScene& scene, ExportRequest& request, bool apart) {
   std::set<const Clip*> wanted, shown;
   for (const ExportItem& item : request.items) wanted.insert(item.clip.get());
   render::Shot shot;
-  for (render::SceneMotion motion : scene.motions()) {
+  for (render::SceneMotion motion : scene.motions) {
     if (!wanted.contains(motion.clip.get())) continue;
     shown.insert(motion.clip.get());
     if (apart) motion.highlighted = false;
@@ -198,19 +198,19 @@ void copyScene(SceneView& view, ExportRequest& request, bool apart) {
   }
   std::erase_if(request.items,
                 [&](const ExportItem& item) { return !shown.contains(item.clip.get()); });
-  shot.options = scene.options();
-  shot.viewpoint = scene.viewpoint();
+  shot.options = scene.options;
+  shot.viewpoint = scene.viewpoint;
   if (request.range) {
     shot.beginS = request.range->beginS;
     shot.endS = request.range->endS;
   }
-  request.stillS = scene.time();
-  request.shotSettings = {{"colour_by", nameOf(view.settings().colourBy)}};
+  request.stillS = scene.timeS;
+  request.shotSettings = {{"colour_by", nameOf(scene.colourBy)}};
   request.shot = std::move(shot);
 }
 
-void addLegend(const SceneView& view, ExportRequest& request) {
-  SceneLegend legend = view.content().legend;
+void addLegend(const ShownScene& scene, ExportRequest& request) {
+  SceneLegend legend = scene.legend;
   legend.groups.clear();
   std::vector<int> counts;
   std::vector<const ExportItem*> firsts;

@@ -5,10 +5,10 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QGroupBox>
-#include <QPointer>
 #include <QSpinBox>
+#include <memory>
 
-#include "gui/scene/scene_view.h"
+#include "gui/scene/shown_scene.h"
 
 #include "report/motion_export.h"
 
@@ -16,14 +16,14 @@ namespace marey::gui {
 
 /// Copies what a view shows now into a request, whose items become those that are shown.
 /// `apart`: the motions are no part of what else is shown, so none of them stands out.
-void copyScene(SceneView& view, ExportRequest& request, bool apart);
+void copyScene(const ShownScene& scene, ExportRequest& request, bool apart);
 /// Lays the view's legend, with the request's motions, over the request's pictures.
-void addLegend(const SceneView& view, ExportRequest& request);
+void addLegend(const ShownScene& scene, ExportRequest& request);
 
 class ExportPictureForm : public QGroupBox {
  public:
-  /// `scene` is the view that is copied; without one only figures can be drawn.
-  ExportPictureForm(SceneView* scene, QWidget* parent);
+  /// `scene` is what the 3D view shows; without it only figures can be drawn.
+  ExportPictureForm(std::shared_ptr<const ShownScene> scene, QWidget* parent);
   /// Greys out what a format does not use.
   void setFormat(ExportFormat format);
   /// Size, rate and look; with that of the 3D view as copyScene does.
@@ -37,7 +37,7 @@ class ExportPictureForm : public QGroupBox {
   bool asInView() const;
   void fillShot(ExportRequest& request, bool apart) const;
 
-  QPointer<SceneView> m_scene;
+  std::shared_ptr<const ShownScene> m_scene;
   ExportFormat m_format = ExportFormat::Mp4;
   QComboBox* m_look;
   QSpinBox* m_width;

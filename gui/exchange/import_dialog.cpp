@@ -148,8 +148,8 @@ class ImportDialog : public QDialog {
            "those files are added in their place."),
         this);
     m_note->setWordWrap(true);
-    const QString document = m_workspace.file();
-    const std::string& folder = m_workspace.experiment().folder.string();
+    const QString document = m_workspace.document().file();
+    const std::string& folder = m_workspace.document().experiment().folder.string();
     const QString beside =
         document.isEmpty() ? QString::fromStdString(folder) : QFileInfo(document).absolutePath();
     m_folder = new QLineEdit(beside + QStringLiteral("/converted"), this);
@@ -270,8 +270,8 @@ class ImportDialog : public QDialog {
         },
         [self, sources] {
           if (!self || self->m_closed) return;
-          self->m_workspace.edit(tr("Import motion"),
-                                 [&](Experiment& e) { addNatural(e, *sources); });
+          self->m_workspace.document().edit(tr("Import motion"),
+                                            [&](Experiment& e) { addNatural(e, *sources); });
           self->close();
         });
     refreshButtons();

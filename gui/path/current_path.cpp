@@ -11,14 +11,14 @@ namespace marey::gui {
 
 CurrentPath::CurrentPath(Workspace& workspace, QObject* parent)
     : QObject(parent), m_workspace(workspace) {
-  connect(&workspace, &Workspace::documentChanged, this, &CurrentPath::refresh);
-  connect(&workspace, &Workspace::currentPathChanged, this, &CurrentPath::refresh);
+  connect(&workspace.document(), &Document::changed, this, &CurrentPath::refresh);
+  connect(&workspace.document(), &Document::currentPathChanged, this, &CurrentPath::refresh);
   refresh();
 }
 
 void CurrentPath::refresh() {
-  const Experiment& experiment = m_workspace.experiment();
-  const int index = m_workspace.currentPath();
+  const Experiment& experiment = m_workspace.document().experiment();
+  const int index = m_workspace.document().currentPath();
   std::optional<ExperimentPath> path;
   if (index >= 0 && index < static_cast<int>(experiment.paths.size()))
     path = experiment.paths[static_cast<size_t>(index)];
@@ -100,9 +100,9 @@ void CurrentPath::take(std::vector<RootFrame> frames) {
 void CurrentPath::edit(const QString& label, const std::function<void(PathEdit&)>& change,
                        bool amend) {
   if (!m_path || m_points.size() < 2) return;
-  const auto index = static_cast<size_t>(m_workspace.currentPath());
+  const auto index = static_cast<size_t>(m_workspace.document().currentPath());
   const std::vector<WayPoint> points = m_points;
-  m_workspace.edit(
+  m_workspace.document().edit(
       label,
       [&](Experiment& experiment) {
         PathEdit edit(points);

@@ -11,15 +11,15 @@ namespace marey::gui {
 
 NaturalPace::NaturalPace(Workspace& workspace, QObject* parent)
     : QObject(parent), m_workspace(workspace) {
-  connect(&workspace, &Workspace::motionsChanged, this, &NaturalPace::refresh);
-  connect(&workspace, &Workspace::documentChanged, this, &NaturalPace::refresh);
+  connect(&workspace.motions(), &MotionGroups::changed, this, &NaturalPace::refresh);
+  connect(&workspace.document(), &Document::changed, this, &NaturalPace::refresh);
   refresh();
 }
 
 std::vector<NaturalPace::Source> NaturalPace::models() const {
   std::vector<Source> out;
-  for (const ExperimentSystem& system : m_workspace.experiment().systems) {
-    const std::string file = m_workspace.modelFile(system);
+  for (const ExperimentSystem& system : m_workspace.document().experiment().systems) {
+    const std::string file = m_workspace.document().modelFile(system);
     out.push_back({system.name, file, ModelCache::stampOf(file)});
   }
   return out;
@@ -27,7 +27,7 @@ std::vector<NaturalPace::Source> NaturalPace::models() const {
 
 std::vector<ClipPtr> NaturalPace::naturalClips() const {
   // What plots count as natural motion: an odd file among them cannot stop the measurement.
-  for (const MotionSet& set : motionSets(m_workspace.groups()))
+  for (const MotionSet& set : motionSets(m_workspace.motions().groups()))
     if (set.natural) return set.clips;
   return {};
 }

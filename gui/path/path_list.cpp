@@ -20,9 +20,9 @@ PathList::PathList(Workspace& workspace, CurrentPath& path, QWidget* parent)
     : QWidget(parent), m_workspace(workspace), m_path(path) {
   build();
   buildMenus();
-  connect(&workspace, &Workspace::documentChanged, this, &PathList::refresh);
-  connect(&workspace, &Workspace::currentPathChanged, this, &PathList::refresh);
-  connect(&workspace, &Workspace::selectionChanged, this, &PathList::refreshActions);
+  connect(&workspace.document(), &Document::changed, this, &PathList::refresh);
+  connect(&workspace.document(), &Document::currentPathChanged, this, &PathList::refresh);
+  connect(&workspace.view(), &View::selectionChanged, this, &PathList::refreshActions);
   connect(&path, &CurrentPath::changed, this, &PathList::refresh);
   refresh();
 }
@@ -48,7 +48,7 @@ void PathList::build() {
   m_choice->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   m_choice->setMinimumContentsLength(10);
   connect(m_choice, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
-    if (!m_filling && index >= 0) m_workspace.setCurrentPath(index);
+    if (!m_filling && index >= 0) m_workspace.document().setCurrentPath(index);
   });
   m_add = addMenuButton(QStringLiteral("pathAdd"), tr("Add"), tr("Add a path to the document"));
   m_more = addMenuButton(QStringLiteral("pathMore"), tr("More"), tr("Rename, copy, files"));
@@ -62,8 +62,9 @@ void PathList::build() {
   m_seconds->setToolTip(tr("How long motions follow the path; 0: as long as the path takes"));
   connect(m_seconds, qOverload<double>(&QDoubleSpinBox::valueChanged), this, [this](double value) {
     if (m_filling || !m_path.path()) return;
-    const auto index = static_cast<size_t>(m_workspace.currentPath());
-    m_workspace.edit(tr("Length of path"), [&](Experiment& e) { setPathSeconds(e, index, value); });
+    const auto index = static_cast<size_t>(m_workspace.document().currentPath());
+    m_workspace.document().edit(tr("Length of path"),
+                                [&](Experiment& e) { setPathSeconds(e, index, value); });
     refresh();  // too short a length shows as it is now
   });
   m_type =
@@ -135,12 +136,12 @@ void PathList::buildMenus() {
 }
 
 void PathList::refresh() {
-  const auto& paths = m_workspace.experiment().paths;
+  const auto& paths = m_workspace.document().experiment().paths;
   m_filling = true;
   m_choice->clear();
   for (const ExperimentPath& path : paths)
     m_choice->addItem(QString::fromStdString(path.name), QString::fromStdString(path.path));
-  m_choice->setCurrentIndex(paths.empty() ? -1 : m_workspace.currentPath());
+  m_choice->setCurrentIndex(paths.empty() ? -1 : m_workspace.document().currentPath());
   const ExperimentPath* path = m_path.path();
   m_choice->setEnabled(path != nullptr);
   m_seconds->setEnabled(path != nullptr);
@@ -162,31 +163,33 @@ void PathList::refreshActions() {
   m_copy->setEnabled(any);
   m_remove->setEnabled(any);
   m_export->setEnabled(m_path.points().size() > 1);
-  m_take->setEnabled(!m_workspace.selection().motions.empty());
+  m_take->setEnabled(!m_workspace.view().selection().motions.empty());
 }
 
 void PathList::add(const QString& label, ExperimentPath path) {
-  size_t index = m_workspace.experiment().paths.size();
-  m_workspace.edit(label, [&](Experiment& e) { index = addPath(e, std::move(path)); });
-  m_workspace.setCurrentPath(static_cast<int>(index));
+  size_t index = m_workspace.document().experiment().paths.size();
+  m_workspace.document().edit(label, [&](Experiment& e) { index = addPath(e, std::move(path)); });
+  m_workspace.document().setCurrentPath(static_cast<int>(index));
 }
 
 void PathList::remove() {
-  const auto index = static_cast<size_t>(m_workspace.currentPath());
-  m_workspace.edit(tr("Remove path"), [index](Experiment& e) {
+  const auto index = static_cast<size_t>(m_workspace.document().currentPath());
+  m_workspace.document().edit(tr("Remove path"), [index](Experiment& e) {
     e.paths.erase(e.paths.begin() + static_cast<std::ptrdiff_t>(index));
   });
 }
 
 void PathList::rename(const QString& name) {
-  const auto index = static_cast<size_t>(m_workspace.currentPath());
-  m_workspace.edit(tr("Rename path"),
-                   [&](Experiment& e) { renamePath(e, index, name.trimmed().toStdString()); });
+  const auto index = static_cast<size_t>(m_workspace.document().currentPath());
+  m_workspace.document().edit(tr("Rename path"), [&](Experiment& e) {
+    renamePath(e, index, name.trimmed().toStdString());
+  });
 }
 
 void PathList::takeSelectedMotion() {
-  const auto& selected = m_workspace.selection().motions;
-  const Motion* motion = selected.empty() ? nullptr : m_workspace.motion(*selected.begin());
+  const auto& selected = m_workspace.view().selection().motions;
+  const Motion* motion =
+      selected.empty() ? nullptr : m_workspace.motions().motion(*selected.begin());
   if (!motion) return;
   try {
     const Clip& clip = *motion->clip;

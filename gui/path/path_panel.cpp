@@ -47,7 +47,7 @@ class PathPanel : public QWidget {
     addKeys();
     connect(m_path, &CurrentPath::changed, this, [this] { refresh(); });
     connect(m_natural, &NaturalPace::changed, this, [this] { refresh(); });
-    connect(&workspace, &Workspace::timeChanged, this, [this] { refreshTime(); });
+    connect(&workspace.view(), &View::timeChanged, this, [this] { refreshTime(); });
     refresh();
   }
 
@@ -136,7 +136,7 @@ class PathPanel : public QWidget {
   }
 
   void refreshTime() {
-    const double time = m_workspace.duration() > 0.0 ? m_workspace.time() : -1.0;
+    const double time = m_workspace.motions().duration() > 0.0 ? m_workspace.view().time() : -1.0;
     m_speed->setTime(time);
     m_turn->setTime(time);
   }

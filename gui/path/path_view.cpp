@@ -27,7 +27,7 @@ PathView::PathView(Workspace& workspace, CurrentPath& path, QWidget* parent)
       "Drag a way-point to move it, the knob of the chosen one to turn the body; double-click to "
       "add one; Delete removes the chosen one. Drag the floor to shift, wheel to zoom."));
   connect(&path, &CurrentPath::changed, this, &PathView::pathChanged);
-  connect(&workspace, &Workspace::timeChanged, this, qOverload<>(&QWidget::update));
+  connect(&workspace.view(), &View::timeChanged, this, qOverload<>(&QWidget::update));
   pathChanged();
 }
 

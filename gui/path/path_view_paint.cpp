@@ -140,8 +140,8 @@ void PathView::paintKnob(QPainter& painter, const Inks& inks) const {
 
 void PathView::paintNow(QPainter& painter, const Inks& inks) const {
   const auto& frames = m_path.frames();
-  if (frames.empty() || m_workspace.duration() <= 0.0) return;
-  const auto i = static_cast<size_t>(std::lround(m_workspace.time() * m_path.curve().fps));
+  if (frames.empty() || m_workspace.motions().duration() <= 0.0) return;
+  const auto i = static_cast<size_t>(std::lround(m_workspace.view().time() * m_path.curve().fps));
   const RootFrame& now = frames[std::min(i, frames.size() - 1)];
   painter.setPen(QPen(inks.background, 1.5));
   painter.setBrush(inks.warning);

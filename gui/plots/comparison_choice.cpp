@@ -17,7 +17,7 @@ QString listed(const std::vector<std::string>& names) {
 
 size_t naturalClips(const Workspace& workspace) {
   size_t out = 0;
-  for (const MotionGroup& group : workspace.groups())
+  for (const MotionGroup& group : workspace.motions().groups())
     for (const Motion& motion : group.motions) out += group.natural() && motion.used ? 1 : 0;
   return out;
 }
@@ -25,18 +25,18 @@ size_t naturalClips(const Workspace& workspace) {
 QString naturalText(const Workspace& workspace) {
   const size_t clips = naturalClips(workspace);
   if (clips == 0) return ComparisonChoice::tr("No natural motion to compare with");
-  if (workspace.comparison() == Comparison::ThisPath)
+  if (workspace.view().comparison() == Comparison::ThisPath)
     return clips == 1
                ? ComparisonChoice::tr("Compared with the one natural clip, on a path of its own")
                : ComparisonChoice::tr("Compared with all %1 natural clips, on paths of their own")
                      .arg(clips);
-  const auto missing = workspace.withoutHeldOut();
+  const auto missing = workspace.sampling().withoutHeldOut();
   const QString natural =
       clips == 1
           ? ComparisonChoice::tr("Compared with the natural clip whose control is followed")
           : ComparisonChoice::tr("Compared with all %1 natural clips, whose control is followed")
                 .arg(clips);
-  if (missing.empty() || workspace.sampling()) return natural;
+  if (missing.empty() || workspace.sampling().active()) return natural;
   return ComparisonChoice::tr("%1 · missing or out of date: %2").arg(natural, listed(missing));
 }
 
@@ -61,22 +61,23 @@ ComparisonChoice::ComparisonChoice(Workspace& workspace, const QString& name, QW
   row->addWidget(m_sample);
   row->addStretch(1);
   connect(m_choice, qOverload<int>(&QComboBox::activated), this, [this](int index) {
-    m_workspace.setComparison(static_cast<Comparison>(index));
+    m_workspace.view().setComparison(static_cast<Comparison>(index));
     // Asking for the comparison is asking for its motions.
-    if (m_workspace.comparison() == Comparison::HeldOut) m_workspace.sampleHeldOut();
+    if (m_workspace.view().comparison() == Comparison::HeldOut)
+      m_workspace.sampling().sampleHeldOut();
   });
-  connect(m_sample, &QPushButton::clicked, &workspace, &Workspace::sampleHeldOut);
-  for (const auto changed :
-       {&Workspace::comparisonChanged, &Workspace::motionsChanged, &Workspace::documentChanged})
-    connect(&workspace, changed, this, &ComparisonChoice::refresh);
+  connect(m_sample, &QPushButton::clicked, &workspace.sampling(), &Sampling::sampleHeldOut);
+  connect(&workspace.view(), &View::comparisonChanged, this, &ComparisonChoice::refresh);
+  connect(&workspace.motions(), &MotionGroups::changed, this, &ComparisonChoice::refresh);
+  connect(&workspace.document(), &Document::changed, this, &ComparisonChoice::refresh);
   refresh();
 }
 
 QString ComparisonChoice::missingText(const Workspace& workspace) {
-  const auto missing = workspace.withoutHeldOut();
+  const auto missing = workspace.sampling().withoutHeldOut();
   if (naturalClips(workspace) == 0)
     return tr("Held-out control is that of natural clips, and the document has none.");
-  if (workspace.sampling()) return tr("Sampling along the control of every natural clip…");
+  if (workspace.sampling().active()) return tr("Sampling along the control of every natural clip…");
   if (missing.empty()) return tr("The document has no model that is ticked in Sampling.");
   return tr("No motions along held-out control yet: press “Sample” above (%1).")
       .arg(listed(missing));
@@ -89,11 +90,11 @@ std::vector<std::string> ComparisonChoice::notes(const Workspace& workspace,
 }
 
 void ComparisonChoice::refresh() {
-  const bool heldOut = m_workspace.comparison() == Comparison::HeldOut;
-  m_choice->setCurrentIndex(static_cast<int>(m_workspace.comparison()));
+  const bool heldOut = m_workspace.view().comparison() == Comparison::HeldOut;
+  m_choice->setCurrentIndex(static_cast<int>(m_workspace.view().comparison()));
   m_sample->setVisible(heldOut);
-  m_sample->setEnabled(!m_workspace.sampling() && naturalClips(m_workspace) > 0 &&
-                       !m_workspace.withoutHeldOut().empty());
+  m_sample->setEnabled(!m_workspace.sampling().active() && naturalClips(m_workspace) > 0 &&
+                       !m_workspace.sampling().withoutHeldOut().empty());
 }
 
 }  // namespace marey::gui

@@ -40,9 +40,9 @@ class DistributionsPanel : public PlotPanel {
     connect(m_mapSet, QOverload<int>::of(&QComboBox::activated), this, [this] { showMap(); });
     connect(m_joints, &QListWidget::itemSelectionChanged, this, [this] { jointsPicked(); });
     connect(m_map, &BodyMap::jointClicked, this, [this](int joint) {
-      Selection next = this->workspace().selection();
+      Selection next = this->workspace().view().selection();
       next.joint = joint;
-      this->workspace().select(std::move(next));
+      this->workspace().view().select(std::move(next));
     });
     connect(m_table, &QTableWidget::cellClicked, this, [this](int row, int) {
       const auto key = static_cast<size_t>(m_table->keyOf(row));
@@ -52,7 +52,7 @@ class DistributionsPanel : public PlotPanel {
 
  protected:
   void refresh() override {
-    m_sets = motionSets(workspace().groups(), comparison());
+    m_sets = motionSets(workspace().motions().groups(), comparison());
     const auto& sets = m_sets;
     showCounted(sets, ComparisonChoice::notes(workspace()));
     if (nothingHeldOut(sets)) return showHint(ComparisonChoice::missingText(workspace()));
@@ -62,7 +62,7 @@ class DistributionsPanel : public PlotPanel {
              "its joints move."));
     fillJoints(sets.front().clips.front()->skeleton);
     DistributionQuery query{
-        .quantity = quantity(), .joints = chosenJoints(), .range = workspace().range()};
+        .quantity = quantity(), .joints = chosenJoints(), .range = workspace().view().range()};
     using Collected = std::pair<std::shared_ptr<const DistributionResult>, LinkedGrid>;
     compute<Collected>(
         tr("Collecting joint samples"),
@@ -88,7 +88,7 @@ class DistributionsPanel : public PlotPanel {
   void rangeMoved() override { refreshSoon(); }
 
   void selectionMoved() override {
-    const auto joint = workspace().selection().joint;
+    const auto joint = workspace().view().selection().joint;
     m_map->setJoint(joint);
     if (joint && *joint < m_joints->count() && !m_joints->item(*joint)->isSelected()) {
       m_following = true;
@@ -148,7 +148,8 @@ class DistributionsPanel : public PlotPanel {
     m_joints->clear();
     m_joints->addItems(names);
     const auto feet = workspace().feet();
-    const int first = workspace().selection().joint.value_or(feet.empty() ? 0 : feet.front());
+    const int first =
+        workspace().view().selection().joint.value_or(feet.empty() ? 0 : feet.front());
     if (first < m_joints->count()) m_joints->item(first)->setSelected(true);
     m_following = false;
   }
@@ -164,9 +165,9 @@ class DistributionsPanel : public PlotPanel {
     if (m_following) return;
     const std::vector<int> joints = chosenJoints();
     if (joints.size() == 1) {
-      Selection next = workspace().selection();
+      Selection next = workspace().view().selection();
       next.joint = joints.front();
-      workspace().select(std::move(next));
+      workspace().view().select(std::move(next));
     }
     refreshSoon();
   }
@@ -226,7 +227,7 @@ class DistributionsPanel : public PlotPanel {
                                                 QString::fromStdString(text.unit));
     m_map->setToolTip(tr("1-Wasserstein distance to natural motion at each joint"));
     m_map->setData(std::move(data));
-    m_map->setJoint(workspace().selection().joint);
+    m_map->setJoint(workspace().view().selection().joint);
   }
 
   void fillTable() {

@@ -28,7 +28,7 @@ class DiversityPanel : public PlotPanel {
 
  protected:
   void refresh() override {
-    m_sets = motionSets(workspace().groups());
+    m_sets = motionSets(workspace().motions().groups());
     const auto& sets = m_sets;
     showCounted(sets);
     const bool pairs = std::any_of(sets.begin(), sets.end(),
@@ -63,7 +63,7 @@ class DiversityPanel : public PlotPanel {
   void showMeans() {
     QStringList parts;
     for (const DiversityCurve& curve : m_curves) {
-      const double mean = meanInRange(curve, workspace().range());
+      const double mean = meanInRange(curve, workspace().view().range());
       if (std::isfinite(mean))
         parts << (mean == 0.0 ? tr("%1 %2 cm (%3 motions, all the same: the model draws nothing)")
                               : tr("%1 %2 cm (%3 motions)"))
@@ -71,7 +71,7 @@ class DiversityPanel : public PlotPanel {
                      .arg(mean, 0, 'f', 1)
                      .arg(curve.compared);
     }
-    const QString where = workspace().range() ? tr("Mean in the range: ") : tr("Mean: ");
+    const QString where = workspace().view().range() ? tr("Mean in the range: ") : tr("Mean: ");
     m_means->setText(parts.isEmpty() ? QString() : where + parts.join(QStringLiteral("; ")));
   }
 

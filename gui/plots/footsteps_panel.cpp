@@ -31,7 +31,7 @@ class FootstepsPanel : public PlotPanel {
 
  protected:
   void refresh() override {
-    m_sets = motionSets(workspace().groups(), comparison());
+    m_sets = motionSets(workspace().motions().groups(), comparison());
     const auto& sets = m_sets;
     showCounted(sets, ComparisonChoice::notes(workspace()));
     if (nothingHeldOut(sets)) return showHint(ComparisonChoice::missingText(workspace()));
@@ -39,9 +39,9 @@ class FootstepsPanel : public PlotPanel {
       return showHint(
           tr("No motion is used: open natural clips or sample a path to count "
              "footsteps."));
-    const Experiment& e = workspace().experiment();
+    const Experiment& e = workspace().document().experiment();
     const FootstepQuery query{.feet = e.feet, .stepCmS = e.toleranceStepCmS};
-    const auto range = workspace().range();
+    const auto range = workspace().view().range();
     using Counted = std::pair<std::vector<FootstepResult>, std::vector<std::string>>;
     compute<Counted>(
         tr("Counting footsteps"),

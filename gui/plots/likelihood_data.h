@@ -27,7 +27,7 @@ struct LikelihoodGroup {
   int notScored = 0;                     ///< motions that are counted elsewhere
 };
 
-/// Scores of natural clips under a system; null where there are none (Workspace::naturalScores).
+/// Scores of natural clips under a system; null where there are none (NaturalMotions::scores).
 using NaturalScores = std::function<const std::vector<ClipScore>*(const std::string& system)>;
 
 /// Samples under their own model, and natural motion under every system (drawn dashed from the

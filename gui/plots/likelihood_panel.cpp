@@ -61,11 +61,11 @@ class LikelihoodPanel : public PlotPanel {
     connect(m_smooth, &QCheckBox::toggled, this, [this] { redraw(); });
     connect(m_worstOf, QOverload<int>::of(&QComboBox::activated), this, [this] { redraw(); });
     connect(m_score, &QPushButton::clicked, this, [this] {
-      for (const ExperimentSystem& system : this->workspace().experiment().systems)
-        this->workspace().scoreNatural(system.name);
+      for (const ExperimentSystem& system : this->workspace().document().experiment().systems)
+        this->workspace().natural().score(system.name);
     });
     connect(m_worst, &QPushButton::clicked, this, [this] { goToWorst(); });
-    connect(&workspace, &Workspace::naturalScoresChanged, this, [this] { refreshSoon(); });
+    connect(&workspace.natural(), &NaturalMotions::scoresChanged, this, [this] { refreshSoon(); });
   }
 
  protected:
@@ -73,15 +73,16 @@ class LikelihoodPanel : public PlotPanel {
     const Workspace& w = workspace();
     std::vector<std::string> systems;
     bool unscored = false;
-    for (const ExperimentSystem& system : w.experiment().systems) {
+    for (const ExperimentSystem& system : w.document().experiment().systems) {
       systems.push_back(system.name);
-      unscored = unscored || w.naturalScores(system.name) == nullptr;
+      unscored = unscored || w.natural().scores(system.name) == nullptr;
     }
-    const auto sets = motionSets(w.groups());
+    const auto sets = motionSets(w.motions().groups());
     m_score->setEnabled(unscored && naturalSet(sets) != nullptr);
     m_groups = std::make_shared<const std::vector<LikelihoodGroup>>(likelihoodGroups(
-        w.groups(), systems, [&w](const std::string& system) { return w.naturalScores(system); },
-        w.experiment().fps));
+        w.motions().groups(), systems,
+        [&w](const std::string& system) { return w.natural().scores(system); },
+        w.document().experiment().fps));
     m_pictures.clear();
     fillWorstOf();
     m_worst->setEnabled(m_worstOf->count() > 0);
@@ -91,8 +92,8 @@ class LikelihoodPanel : public PlotPanel {
           tr("No log-likelihoods yet: sample a path, or press \"Score natural motion\" "
              "to see the natural clips under the models."));
     m_models.clear();
-    for (const ExperimentSystem& system : w.experiment().systems)
-      m_models.emplace(system.name, w.modelFile(system));
+    for (const ExperimentSystem& system : w.document().experiment().systems)
+      m_models.emplace(system.name, w.document().modelFile(system));
     m_input = std::make_shared<const RowInput>(rowInput(systems));
     redraw();
   }
@@ -118,9 +119,9 @@ class LikelihoodPanel : public PlotPanel {
   };
 
   RowInput rowInput(const std::vector<std::string>& systems) const {
-    RowInput out{.groups = workspace().groups(), .systems = systems, .natural = {}};
+    RowInput out{.groups = workspace().motions().groups(), .systems = systems, .natural = {}};
     for (const std::string& system : systems)
-      if (const auto* scores = workspace().naturalScores(system)) out.natural[system] = *scores;
+      if (const auto* scores = workspace().natural().scores(system)) out.natural[system] = *scores;
     return out;
   }
   using Kind = std::tuple<bool, bool, std::string>;  ///< every motion, smoothed, worst frame of
@@ -172,7 +173,7 @@ class LikelihoodPanel : public PlotPanel {
         },
         [&](const std::string& system) -> std::shared_ptr<const ModelInfo> {
           try {
-            const auto model = workspace.model(models.at(system));
+            const auto model = workspace.models().model(models.at(system));
             return {model, &model->info()};
           } catch (const std::exception&) {
             // A model that cannot be read is reported where it is sampled; it has no row.
@@ -236,10 +237,10 @@ class LikelihoodPanel : public PlotPanel {
   }
 
   void goToWorst() {
-    const auto worst = worstFrame(*m_groups, workspace().range(), worstOf());
+    const auto worst = worstFrame(*m_groups, workspace().view().range(), worstOf());
     if (!worst) return;
     selectMotions({worst->id}, false);
-    workspace().setTime(worst->timeS);
+    workspace().view().setTime(worst->timeS);
   }
 
   QComboBox *m_view = nullptr, *m_worstOf = nullptr;

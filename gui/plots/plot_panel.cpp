@@ -62,19 +62,19 @@ PlotPanel::PlotPanel(Workspace& workspace, const QString& name, bool overTime, Q
     m_stale = !isVisible();
     if (!m_stale) refresh();
   });
-  for (const auto changed : {&Workspace::visibilityChanged, &Workspace::motionsChanged})
-    connect(&workspace, changed, this, &PlotPanel::motionsMoved);
+  for (const auto changed : {&MotionGroups::visibilityChanged, &MotionGroups::changed})
+    connect(&workspace.motions(), changed, this, &PlotPanel::motionsMoved);
   connect(&workspace.jobs(), &JobQueue::ended, this, [this](int job) {
     if (job != m_job) return;
     m_job = 0;
     if (std::exchange(m_again, false)) refreshSoon();
   });
-  connect(&workspace, &Workspace::selectionChanged, this, [this] { selectionMoved(); });
-  connect(&workspace, &Workspace::rangeChanged, this, [this] { rangeMoved(); });
+  connect(&workspace.view(), &View::selectionChanged, this, [this] { selectionMoved(); });
+  connect(&workspace.view(), &View::rangeChanged, this, [this] { rangeMoved(); });
   m_chart->setNamer([this](const CurveRef& curve) {
     const auto found = m_curves.find(curve);
     if (found == m_curves.end() || found->second.size() != 1) return QString();
-    const Motion* motion = m_workspace.motion(found->second.front());
+    const Motion* motion = m_workspace.motions().motion(found->second.front());
     return motion ? QString::fromStdString(motion->clip->name) : QString();
   });
   connect(m_chart, &ChartView::clicked, this, &PlotPanel::takeClick);
@@ -86,13 +86,13 @@ PlotPanel::PlotPanel(Workspace& workspace, const QString& name, bool overTime, Q
 }
 
 void PlotPanel::linkTime() {
-  connect(&m_workspace, &Workspace::timeChanged, this, [this] { showTime(); });
-  connect(&m_workspace, &Workspace::rangeChanged, this, [this] { showTime(); });
+  connect(&m_workspace.view(), &View::timeChanged, this, [this] { showTime(); });
+  connect(&m_workspace.view(), &View::rangeChanged, this, [this] { showTime(); });
   connect(m_chart, &ChartView::brushed, this, [this](double low, double high) {
-    m_workspace.setRange(TimeRange{low, high});
+    m_workspace.view().setRange(TimeRange{low, high});
   });
   connect(m_chart, &ChartView::brushCleared, this, [this] {
-    if (m_overTime) m_workspace.setRange(std::nullopt);
+    if (m_overTime) m_workspace.view().setRange(std::nullopt);
   });
 }
 
@@ -104,8 +104,8 @@ void PlotPanel::followTime(bool overTime) {
 }
 
 void PlotPanel::showTime() {
-  const auto& range = m_workspace.range();
-  m_chart->setCursor(m_overTime ? std::optional(m_workspace.time()) : std::nullopt);
+  const auto& range = m_workspace.view().range();
+  m_chart->setCursor(m_overTime ? std::optional(m_workspace.view().time()) : std::nullopt);
   m_chart->setRange(m_overTime && range ? std::optional(ChartSpan{range->beginS, range->endS})
                                         : std::nullopt);
 }
@@ -117,8 +117,8 @@ void PlotPanel::refreshSoon() {
 }
 
 void PlotPanel::motionsMoved() {
-  const Experiment& e = m_workspace.experiment();
-  Inputs now{.sets = motionSets(m_workspace.groups(), comparison()),
+  const Experiment& e = m_workspace.document().experiment();
+  Inputs now{.sets = motionSets(m_workspace.motions().groups(), comparison()),
              .systems = e.systems,
              .feet = e.feet,
              .toleranceStepCmS = e.toleranceStepCmS,
@@ -142,11 +142,11 @@ void PlotPanel::motionsMoved() {
 
 void PlotPanel::followComparison() {
   m_compares = true;
-  connect(&m_workspace, &Workspace::comparisonChanged, this, &PlotPanel::refreshSoon);
+  connect(&m_workspace.view(), &View::comparisonChanged, this, &PlotPanel::refreshSoon);
 }
 
 Comparison PlotPanel::comparison() const {
-  return m_compares ? m_workspace.comparison() : Comparison::ThisPath;
+  return m_compares ? m_workspace.view().comparison() : Comparison::ThisPath;
 }
 
 bool PlotPanel::nothingHeldOut(const std::vector<MotionSet>& sets) const {
@@ -194,7 +194,7 @@ void PlotPanel::showGrid(LinkedGrid grid) {
 }
 
 void PlotPanel::showHighlights() {
-  const std::set<MotionId>& selected = m_workspace.selection().motions;
+  const std::set<MotionId>& selected = m_workspace.view().selection().motions;
   std::vector<ChartHighlight> highlights =
       selected.empty() ? std::vector<ChartHighlight>{} : curvesOf(selected);
   const size_t most = highlights.size() + kMostHighlights;
@@ -236,19 +236,19 @@ void PlotPanel::takeClick(const ChartHit& hit, Qt::KeyboardModifiers modifiers) 
     if (index < series.size() && series[index].kind == render::SeriesKind::VerticalRule)
       time = series[index].x.front();
   }
-  m_workspace.setTime(time);
+  m_workspace.view().setTime(time);
 }
 
 void PlotPanel::selectMotions(const std::vector<MotionId>& motions, bool add) {
-  Selection next = m_workspace.selection();
+  Selection next = m_workspace.view().selection();
   if (!add) next.motions.clear();
   next.motions.insert(motions.begin(), motions.end());
-  m_workspace.select(std::move(next));
+  m_workspace.view().select(std::move(next));
 }
 
 render::Recipe PlotPanel::recipe() const {
-  return plotRecipe(m_name.toStdString(), m_workspace.experiment(), m_workspace.groups(),
-                    m_workspace.range(), comparison());
+  return plotRecipe(m_name.toStdString(), m_workspace.document().experiment(),
+                    m_workspace.motions().groups(), m_workspace.view().range(), comparison());
 }
 
 void PlotPanel::run(const QString& title, Job::Work work, std::function<void()> take) {

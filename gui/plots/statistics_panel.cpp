@@ -59,7 +59,7 @@ class StatisticsPanel : public PlotPanel {
       QApplication::clipboard()->setText(QString::fromStdString(statisticsText(*m_shown, '\t')));
     });
     connect(m_export, &QPushButton::clicked, this, [this] { exportCsv(); });
-    connect(&workspace, &Workspace::documentChanged, this, [this] { refreshSoon(); });
+    connect(&workspace.document(), &Document::changed, this, [this] { refreshSoon(); });
     m_copy->setEnabled(false);
     m_export->setEnabled(false);
   }
@@ -92,9 +92,9 @@ class StatisticsPanel : public PlotPanel {
   }
 
   StatisticsInput inputNow() const {
-    const Experiment& e = workspace().experiment();
-    return {.sets = motionSets(workspace().groups(), comparison()),
-            .range = workspace().range(),
+    const Experiment& e = workspace().document().experiment();
+    return {.sets = motionSets(workspace().motions().groups(), comparison()),
+            .range = workspace().view().range(),
             .feet = e.feet,
             .footStepCmS = e.toleranceStepCmS,
             .seed = e.seed,

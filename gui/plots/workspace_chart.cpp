@@ -9,8 +9,8 @@ ChartOut chartOutOf(Workspace& workspace, const QString& name,
   return {.grid = std::move(grid),
           .recipe =
               [&workspace, name] {
-                return plotRecipe(name.toStdString(), workspace.experiment(), workspace.groups(),
-                                  workspace.range());
+                return plotRecipe(name.toStdString(), workspace.document().experiment(),
+                                  workspace.motions().groups(), workspace.view().range());
               },
           .stem = name,
           .failed =

@@ -7,7 +7,8 @@ namespace marey::gui {
 MotionColouring::MotionColouring(Workspace& workspace, QObject* parent)
     : QObject(parent), m_workspace(workspace) {
   // New scores may lie where old ones did.
-  connect(&workspace, &Workspace::naturalScoresChanged, this, [this] { m_sources.clear(); });
+  connect(&workspace.natural(), &NaturalMotions::scoresChanged, this,
+          [this] { m_sources.clear(); });
 }
 
 const MotionColours& MotionColouring::of(const std::vector<ColourSource>& sources, ColourBy by,

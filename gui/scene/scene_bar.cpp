@@ -64,7 +64,7 @@ SceneBar::SceneBar(SceneView& view, QWidget* shortcutOwner, QWidget* parent)
     const QSignalBlocker quiet(m_placement);
     m_placement->setCurrentIndex(static_cast<int>(m_view.settings().placement));
   });
-  connect(&m_view.workspace(), &Workspace::documentChanged, this, &SceneBar::refreshSystems);
+  connect(&m_view.workspace().document(), &Document::changed, this, &SceneBar::refreshSystems);
   refreshSystems();
   connectView();
 }
@@ -73,7 +73,7 @@ SceneBar::SceneBar(SceneView& view, QWidget* shortcutOwner, QWidget* parent)
 void SceneBar::refreshSystems() {
   const QString before = m_naturalUnder->currentText();
   m_naturalUnder->clear();
-  for (const ExperimentSystem& system : m_view.workspace().experiment().systems)
+  for (const ExperimentSystem& system : m_view.workspace().document().experiment().systems)
     m_naturalUnder->addItem(QString::fromStdString(system.name));
   m_naturalUnder->setCurrentIndex(std::max(0, m_naturalUnder->findText(before)));
   m_naturalUnder->setVisible(m_naturalUnder->count() > 1 &&

@@ -18,9 +18,9 @@ QString tr(const char* text) {
 
 /// The rate of the models: that of their samples, where there is one.
 double modelRate(const Workspace& workspace) {
-  for (const MotionGroup& group : workspace.groups())
+  for (const MotionGroup& group : workspace.motions().groups())
     if (!group.natural() && !group.motions.empty()) return group.motions.front().clip->fps;
-  return workspace.experiment().fps;
+  return workspace.document().experiment().fps;
 }
 
 /// Natural scores come in the order of the natural clips, over all natural groups.
@@ -37,12 +37,12 @@ void colourByValue(const Workspace& workspace, const SceneSettings& settings,
                    MotionColouring& colouring, SceneContent& content) {
   const bool likelihood = settings.colourBy == ColourBy::Likelihood;
   const std::string system = naturalSystem(workspace, settings);
-  const std::vector<ClipScore>* scores = likelihood ? workspace.naturalScores(system) : nullptr;
+  const std::vector<ClipScore>* scores = likelihood ? workspace.natural().scores(system) : nullptr;
   std::vector<ColourSource> sources;
   bool missing = false, natural = false, others = false;
   std::string unit;  // of the scale: that of the first motion that has one
   for (const MotionId& id : content.ids) {
-    const MotionGroup& group = *workspace.group(id.group);
+    const MotionGroup& group = *workspace.motions().group(id.group);
     sources.push_back({group.motions[static_cast<size_t>(id.index)].clip, nullptr});
     if (likelihood) sources.back().score = scoreOf(group, id, scores);
     missing = missing || (likelihood && !sources.back().score);
@@ -76,7 +76,7 @@ void colourByValue(const Workspace& workspace, const SceneSettings& settings,
 
 void colourBySample(const Workspace& workspace, SceneContent& content) {
   for (size_t i = 0; i < content.ids.size(); ++i) {
-    const MotionGroup& group = *workspace.group(content.ids[i].group);
+    const MotionGroup& group = *workspace.motions().group(content.ids[i].group);
     const auto last = std::max<double>(1.0, static_cast<double>(group.motions.size()) - 1.0);
     // The scale's yellow end is hard to see on white.
     content.motions[i].colour = scaleColour(0.9 * content.ids[i].index / last);
@@ -85,8 +85,8 @@ void colourBySample(const Workspace& workspace, SceneContent& content) {
 
 /// The name of the selection's joint; empty without one.
 std::string selectedJoint(const Workspace& workspace) {
-  const auto& joint = workspace.selection().joint;
-  const auto skeleton = workspace.skeleton();
+  const auto& joint = workspace.view().selection().joint;
+  const auto skeleton = workspace.motions().skeleton();
   if (!joint || !skeleton || *joint < 0 || *joint >= skeleton->jointCount()) return {};
   return skeleton->names[static_cast<size_t>(*joint)];
 }
@@ -108,7 +108,7 @@ void markJoints(const Workspace& workspace, Trails trails, SceneContent& content
     const int joint = chosen.empty() ? -1 : body.find(chosen);
     if (joint >= 0) motion.highlightJoint = joint;
     if (trails == Trails::Feet)
-      motion.trailJoints = feetOrNone(body, workspace.experiment().feet);
+      motion.trailJoints = feetOrNone(body, workspace.document().experiment().feet);
     else if (trails == Trails::SelectedJoint)
       motion.trailJoints = {chosen.empty() ? rolesOf(body).hips : joint};
   }
@@ -117,8 +117,8 @@ void markJoints(const Workspace& workspace, Trails trails, SceneContent& content
 }  // namespace
 
 std::string naturalSystem(const Workspace& workspace, const SceneSettings& settings) {
-  if (workspace.systemIndex(settings.naturalUnder) >= 0) return settings.naturalUnder;
-  const auto& systems = workspace.experiment().systems;
+  if (workspace.document().systemIndex(settings.naturalUnder) >= 0) return settings.naturalUnder;
+  const auto& systems = workspace.document().experiment().systems;
   return systems.empty() ? std::string() : systems.front().name;
 }
 
@@ -129,18 +129,18 @@ QString groupLabel(const std::string& group, int shown) {
 SceneContent sceneContent(const Workspace& workspace, const SceneSettings& settings,
                           MotionColouring& colouring) {
   SceneContent out;
-  out.ids = workspace.visibleMotions();
+  out.ids = workspace.motions().visibleMotions();
   std::map<int, int> counts;
   for (const MotionId& id : out.ids) {
-    const MotionGroup& group = *workspace.group(id.group);
+    const MotionGroup& group = *workspace.motions().group(id.group);
     ++counts[id.group];
     out.motions.push_back({.clip = group.motions[static_cast<size_t>(id.index)].clip,
                            .colour = render::colourOf(group.colourIndex),
                            .opacity = settings.opacity,
-                           .highlighted = workspace.selected(id),
+                           .highlighted = workspace.view().selected(id),
                            .label = motionLabel(group, id.index).toStdString()});
   }
-  for (const MotionGroup& group : workspace.groups())
+  for (const MotionGroup& group : workspace.motions().groups())
     if (const int count = counts[group.id]; count > 0)
       out.legend.groups.push_back(
           {render::colourOf(group.colourIndex), groupLabel(group.name, count)});

@@ -122,20 +122,20 @@ void SceneView::wheelEvent(QWheelEvent* event) {
 void SceneView::pick(const QPointF& at, bool add) {
   const auto hit = m_scene.pick(at.x(), at.y(), width(), height());
   if (!hit || hit->motion >= m_content.ids.size()) {
-    if (!add) m_workspace.select({});
+    if (!add) m_workspace.view().select({});
     return;
   }
   const MotionId& id = m_content.ids[hit->motion];
   Selection selection;
-  if (add) selection = m_workspace.selection();
+  if (add) selection = m_workspace.view().selection();
   // A second Ctrl-click on a motion takes it out again.
   if (!add || selection.motions.erase(id) == 0) selection.motions.insert(id);
   // The selection counts joints in the first motion's body, which may be another one.
   const auto& names = m_content.motions[hit->motion].clip->skeleton->names;
-  const auto first = m_workspace.skeleton();
+  const auto first = m_workspace.motions().skeleton();
   const int joint = first ? first->find(names[static_cast<size_t>(hit->joint)]) : -1;
   selection.joint = joint >= 0 ? std::optional(joint) : std::nullopt;
-  m_workspace.select(selection);
+  m_workspace.view().select(selection);
 }
 
 void SceneView::updateHover() {

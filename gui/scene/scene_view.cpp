@@ -3,6 +3,7 @@
 #include <QCoreApplication>
 #include <QSurfaceFormat>
 #include <algorithm>
+#include <utility>
 
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
@@ -19,13 +20,13 @@ constexpr int kHoverMs = 40;
 
 }  // namespace
 
-SceneView::SceneView(Workspace& workspace, QWidget* parent)
+SceneView::SceneView(Workspace& workspace, std::shared_ptr<ShownScene> shown, QWidget* parent)
     : QVTKOpenGLNativeWidget(parent),
       m_workspace(workspace),
       m_path(new CurrentPath(workspace, this)),
       m_tool(*m_path, m_scene),
       m_colouring(new MotionColouring(workspace, this)),
-      m_contacts(ContactTolerance::of(workspace)) {
+      m_shown(std::move(shown)) {
   setObjectName(QStringLiteral("sceneView"));
   setMinimumSize(240, 180);
   setMouseTracking(true);
@@ -67,17 +68,18 @@ SceneView::~SceneView() {
 }
 
 void SceneView::connectWorkspace() {
-  for (const auto changed : {&Workspace::motionsChanged, &Workspace::visibilityChanged,
-                             &Workspace::naturalScoresChanged, &Workspace::selectionChanged})
-    connect(&m_workspace, changed, this, &SceneView::changeMotions);
-  connect(&m_workspace, &Workspace::documentChanged, this, &SceneView::changeMotions);
-  connect(&m_workspace, &Workspace::timeChanged, this, [this](double seconds) {
+  for (const auto changed : {&MotionGroups::changed, &MotionGroups::visibilityChanged})
+    connect(&m_workspace.motions(), changed, this, &SceneView::changeMotions);
+  connect(&m_workspace.natural(), &NaturalMotions::scoresChanged, this, &SceneView::changeMotions);
+  connect(&m_workspace.view(), &View::selectionChanged, this, &SceneView::changeMotions);
+  connect(&m_workspace.document(), &Document::changed, this, &SceneView::changeMotions);
+  connect(&m_workspace.view(), &View::timeChanged, this, [this](double seconds) {
     m_scene.setTime(seconds);
     schedule();
   });
   connect(m_colouring, &MotionColouring::changed, this, &SceneView::changeMotions);
   connect(m_path, &CurrentPath::changed, this, &SceneView::changeOptions);
-  connect(&m_contacts, &ContactTolerance::changed, this, &SceneView::changeOptions);
+  connect(&m_workspace.view(), &View::contactToleranceChanged, this, &SceneView::changeOptions);
 }
 
 void SceneView::changeMotions() {
@@ -109,11 +111,25 @@ void SceneView::flush() {
   if (!isVisible()) return;
   if (m_motionsChanged) updateMotions();
   if (m_optionsChanged) updateOptions();
+  if (m_motionsChanged) m_shown->motions = m_scene.motions();
   m_motionsChanged = m_optionsChanged = false;
   fitNew();
   updateHint();
+  tellShown();
   if (isValid()) renderWindow()->Render();
   m_overlay->update();
+}
+
+void SceneView::tellShown() {
+  m_shown->options = m_scene.options();
+  m_shown->viewpoint = m_scene.viewpoint();
+  m_shown->follow = m_scene.follow();
+  m_shown->timeS = m_scene.time();
+  m_shown->colourBy = m_settings.colourBy;
+  m_shown->legend = m_content.legend;
+  const double ratio = devicePixelRatioF();
+  m_shown->width = static_cast<int>(ratio * width());
+  m_shown->height = static_cast<int>(ratio * height());
 }
 
 void SceneView::updateMotions() {
@@ -135,7 +151,7 @@ void SceneView::updateMotions() {
     }
   }
   m_content = std::move(next);
-  m_scene.setTime(m_workspace.time());
+  m_scene.setTime(m_workspace.view().time());
 }
 
 /// Every motion can be drawn where it is.
@@ -165,11 +181,11 @@ void SceneView::updateOptions() {
   options.placement = m_settings.placement;
   options.detail = m_settings.detail;
   options.strobe.everyS = m_settings.ghostFrames > 0
-                              ? m_settings.ghostFrames / m_workspace.experiment().fps
+                              ? m_settings.ghostFrames / m_workspace.document().experiment().fps
                               : m_settings.ghostsS;
   options.trailS = m_settings.trailS;
   options.contactMarks = m_settings.contacts;
-  options.contacts = m_contacts.rule();
+  options.contacts = m_workspace.contactRule();
   options.shadow = m_settings.shadow;
   if (m_settings.path) options.path = m_path->frames();
   options.tone = isDark(palette()) ? render::Tone::Dark : render::Tone::Light;
@@ -185,7 +201,7 @@ void SceneView::updateOptions() {
 void SceneView::updateHint() {
   const bool empty = m_content.motions.empty();
   QString hint;
-  const auto& groups = m_workspace.groups();
+  const auto& groups = m_workspace.motions().groups();
   // The natural group is there before any clip of it.
   const bool nothing = std::all_of(groups.begin(), groups.end(),
                                    [](const MotionGroup& g) { return g.motions.empty(); });
@@ -277,13 +293,13 @@ void SceneView::removeWayPoint() {
 
 /// Samples carry their scores; natural motion gets those under the chosen model.
 void SceneView::scoreNatural() {
-  const auto& groups = m_workspace.groups();
+  const auto& groups = m_workspace.motions().groups();
   const bool natural = std::any_of(groups.begin(), groups.end(), [](const MotionGroup& g) {
     return g.natural() && !g.motions.empty();
   });
   const std::string system = naturalSystem(m_workspace, m_settings);
-  if (natural && !system.empty() && !m_workspace.naturalScores(system))
-    m_workspace.scoreNatural(system);
+  if (natural && !system.empty() && !m_workspace.natural().scores(system))
+    m_workspace.natural().score(system);
 }
 
 }  // namespace marey::gui

@@ -8,7 +8,7 @@
 #include "gui/scene/floor_path_tool.h"
 #include "gui/scene/scene_content.h"
 #include "gui/scene/scene_overlay.h"
-#include "gui/workspace/contact_tolerance.h"
+#include "gui/scene/shown_scene.h"
 #include <QVTKOpenGLNativeWidget.h>
 
 #include "render/scene/scene.h"
@@ -19,7 +19,8 @@ namespace marey::gui {
 class SceneView : public QVTKOpenGLNativeWidget {
   Q_OBJECT
  public:
-  SceneView(Workspace& workspace, QWidget* parent);
+  /// Keeps `shown` as it is seen.
+  SceneView(Workspace& workspace, std::shared_ptr<ShownScene> shown, QWidget* parent);
   /// Before the application starts: the OpenGL and the windows that every view asks for.
   static void prepareApplication();
   ~SceneView() override;
@@ -73,6 +74,7 @@ class SceneView : public QVTKOpenGLNativeWidget {
   void updateOptions();
   void fitNew();
   void updateHint();
+  void tellShown();
   void scoreNatural();
   void fallBack(const std::string& why);
   void updateHover();
@@ -85,7 +87,7 @@ class SceneView : public QVTKOpenGLNativeWidget {
   SceneSettings m_settings;
   SceneContent m_content;
   MotionColouring* m_colouring = nullptr;
-  ContactTolerance& m_contacts;
+  std::shared_ptr<ShownScene> m_shown;
   SceneOverlay* m_overlay = nullptr;
   QTimer m_hover;
   bool m_redrawPosted = false;

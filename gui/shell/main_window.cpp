@@ -55,8 +55,8 @@ MainWindow::MainWindow(Workspace& workspace, const std::vector<PanelSpec>& panel
   connect(&m_workspace, &Workspace::noticed, this,
           [this](const QString& what) { statusBar()->showMessage(what, kMessageMs); });
   addToolBar(Qt::TopToolBarArea, new OfferBar(workspace, this));
-  connect(&m_workspace, &Workspace::documentChanged, this, &MainWindow::refreshTitle);
-  connect(&m_workspace, &Workspace::motionsChanged, this, &MainWindow::refreshBringBack);
+  connect(&m_workspace.document(), &Document::changed, this, &MainWindow::refreshTitle);
+  connect(&m_workspace.motions(), &MotionGroups::changed, this, &MainWindow::refreshBringBack);
   refreshTitle();
   refreshBringBack();
   const QSettings settings;
@@ -82,7 +82,7 @@ void MainWindow::buildDocks(const std::vector<PanelSpec>& panels) {
   for (const PanelSpec& spec : panels) {
     auto* dock = new ads::CDockWidget(spec.title);
     dock->setObjectName(spec.id);
-    QWidget* content = spec.make(m_workspace, dock);
+    QWidget* content = spec.make({m_workspace, m_scene}, dock);
     content->setObjectName(spec.id + QStringLiteral("Panel"));
     dock->setWidget(content, ads::CDockWidget::ForceNoScrollArea);
     auto& area = areas[spec.area];
@@ -119,13 +119,14 @@ void MainWindow::setTheme(Theme theme) {
 }
 
 void MainWindow::refreshTitle() {
-  const QString file = m_workspace.file();
-  const QString name = file.isEmpty() ? QString::fromStdString(m_workspace.experiment().title)
-                                      : QFileInfo(file).fileName();
+  const QString file = m_workspace.document().file();
+  const QString name = file.isEmpty()
+                           ? QString::fromStdString(m_workspace.document().experiment().title)
+                           : QFileInfo(file).fileName();
   setWindowTitle(name + QStringLiteral("[*] – Marey"));
   setWindowModified(m_workspace.modified());
-  const auto& history = m_workspace.history();
-  const bool natural = !m_workspace.experiment().natural.empty();
+  const auto& history = m_workspace.document().history();
+  const bool natural = !m_workspace.document().experiment().natural.empty();
   m_report->setEnabled(natural);
   m_reload->setEnabled(natural);
   m_undo->setEnabled(history.canUndo());
@@ -139,7 +140,7 @@ void MainWindow::refreshTitle() {
 }
 
 void MainWindow::refreshBringBack() {
-  const auto& aside = m_workspace.aside();
+  const auto& aside = m_workspace.motions().aside();
   m_bringBack->setEnabled(!aside.empty());
   m_bringBack->setText(aside.empty()
                            ? tr("Bring back removed motions")
@@ -149,20 +150,20 @@ void MainWindow::refreshBringBack() {
 void MainWindow::showError(const QString& title, const QString& error) {
   statusBar()->showMessage(title + QStringLiteral(": ") + error, kMessageMs);
   // Not modal: work goes on, and several errors do not queue up behind each other.
-  auto* box = findChild<QMessageBox*>(QStringLiteral("errorBox"));
-  if (box == nullptr) {
-    box = new QMessageBox(QMessageBox::Warning, tr("Marey"), {}, QMessageBox::Ok, this);
-    box->setObjectName(QStringLiteral("errorBox"));
-    box->setModal(false);
-    box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  if (m_errorBox == nullptr) {
+    m_errorBox = new QMessageBox(QMessageBox::Warning, tr("Marey"), {}, QMessageBox::Ok, this);
+    m_errorBox->setObjectName(QStringLiteral("errorBox"));
+    m_errorBox->setModal(false);
+    m_errorBox->setTextInteractionFlags(Qt::TextSelectableByMouse);
   }
   // What is still being read is not taken away.
-  const bool first = !box->isVisible();
-  box->setText(first ? tr("%1 did not work.").arg(title) : tr("Several things did not work."));
-  box->setInformativeText(first ? error
-                                : box->informativeText() + QStringLiteral("\n\n") + title +
-                                      QStringLiteral(": ") + error);
-  box->show();
+  const bool first = !m_errorBox->isVisible();
+  m_errorBox->setText(first ? tr("%1 did not work.").arg(title)
+                            : tr("Several things did not work."));
+  m_errorBox->setInformativeText(first ? error
+                                       : m_errorBox->informativeText() + QStringLiteral("\n\n") +
+                                             title + QStringLiteral(": ") + error);
+  m_errorBox->show();
 }
 
 bool MainWindow::event(QEvent* event) {

@@ -16,6 +16,8 @@ class CDockManager;
 class CDockWidget;
 }  // namespace ads
 
+class QMessageBox;
+
 namespace marey::gui {
 
 class MainWindow : public QMainWindow {
@@ -31,6 +33,8 @@ class MainWindow : public QMainWindow {
   void openFiles(const QStringList& files);
   void setTheme(Theme theme);
   Theme theme() const { return m_theme; }
+  /// What the 3D view shows, for pictures and films of it.
+  const std::shared_ptr<ShownScene>& shownScene() const { return m_scene; }
   /// Every command of the menus.
   const std::vector<QAction*>& commands() const { return m_commands; }
   /// Those and the panels' own with a key, for the palette and the key sheet.
@@ -85,6 +89,7 @@ class MainWindow : public QMainWindow {
   void showPalette();
 
   Workspace& m_workspace;
+  std::shared_ptr<ShownScene> m_scene = std::make_shared<ShownScene>();
   std::unique_ptr<Autosave> m_autosave;
   ads::CDockManager* m_docks = nullptr;
   std::map<QString, ads::CDockWidget*> m_panels;
@@ -95,6 +100,7 @@ class MainWindow : public QMainWindow {
   QAction* m_report = nullptr;
   QAction* m_reload = nullptr;
   QMenu* m_recent = nullptr;
+  QMessageBox* m_errorBox = nullptr;  ///< made when it is first needed
   QByteArray m_firstLayout;
   std::function<void(const QStringList&)> m_importer;
   Theme m_theme = Theme::Light;

@@ -55,22 +55,22 @@ void MainWindow::open(const QString& given) {
 }
 
 bool MainWindow::save() {
-  if (m_workspace.file().isEmpty()) return saveAs();
-  if (!mayReplace(m_workspace.file())) return false;
+  if (m_workspace.document().file().isEmpty()) return saveAs();
+  if (!mayReplace(m_workspace.document().file())) return false;
   try {
-    m_workspace.save(m_workspace.file());
+    m_workspace.save(m_workspace.document().file());
   } catch (const Error& error) {
     showError(tr("Saving"), QString::fromStdString(error.what()));
     return false;
   }
-  rememberRecent(m_workspace.file());
+  rememberRecent(m_workspace.document().file());
   m_autosave->remove();
-  statusBar()->showMessage(tr("Saved %1").arg(m_workspace.file()), 4000);
+  statusBar()->showMessage(tr("Saved %1").arg(m_workspace.document().file()), 4000);
   return true;
 }
 
 bool MainWindow::saveAs() {
-  const QString file = askSaveFile(this, tr("Save the experiment"), m_workspace.file(),
+  const QString file = askSaveFile(this, tr("Save the experiment"), m_workspace.document().file(),
                                    tr("Experiments (*.json)"), QStringLiteral("json"));
   if (file.isEmpty() || !mayReplace(file)) return false;
   try {
@@ -85,7 +85,7 @@ bool MainWindow::saveAs() {
 }
 
 bool MainWindow::mayReplace(const QString& file) {
-  if (!isEmpty(m_workspace.experiment()) || QFileInfo(file).size() == 0) return true;
+  if (!isEmpty(m_workspace.document().experiment()) || QFileInfo(file).size() == 0) return true;
   try {
     if (isEmpty(readExperiment(file.toStdString()))) return true;
   } catch (const Error&) {
@@ -165,10 +165,10 @@ void MainWindow::openFiles(const QStringList& files) {
     const QString document = QString::fromStdString(documents.front());
     open(document);
     // Not opened: what came with it has no place in another document.
-    if (m_workspace.file() != document) return;
+    if (m_workspace.document().file() != document) return;
   }
   for (const std::string& file : paths)
-    m_workspace.edit(tr("Add path"), [&](Experiment& e) {
+    m_workspace.document().edit(tr("Add path"), [&](Experiment& e) {
       addPath(e, {.name = std::filesystem::path(file).stem().string(),
                   .path = {},
                   .wayPoints = readPathFile(file),
@@ -180,7 +180,7 @@ void MainWindow::openFiles(const QStringList& files) {
     for (const std::string& file : motions) names += QString::fromStdString(file);
     m_importer(names);
   } else if (!motions.empty()) {
-    m_workspace.edit(tr("Add natural motion"), [&](Experiment& e) {
+    m_workspace.document().edit(tr("Add natural motion"), [&](Experiment& e) {
       for (const std::string& file : motions) {
         std::error_code none;
         if (!std::filesystem::is_directory(file, none) && !io::isMotionFile(file))
@@ -200,13 +200,13 @@ void MainWindow::addModelFiles(const std::vector<std::string>& files) {
         for (size_t i = 0; i < files.size(); ++i) {
           progress.throwIfCancelled();
           // What is no model is refused here.
-          workspace->model(files[i]);
+          workspace->models().model(files[i]);
           temperatures->push_back(modelAdvice(files[i]).temperature.value_or(1.0));
           progress.report(static_cast<double>(i + 1) / static_cast<double>(files.size()), files[i]);
         }
       },
       [this, files, temperatures] {
-        m_workspace.edit(tr("Add models"), [&](Experiment& e) {
+        m_workspace.document().edit(tr("Add models"), [&](Experiment& e) {
           for (size_t i = 0; i < files.size(); ++i)
             addSystem(e, files[i], std::filesystem::path(files[i]).stem().string(),
                       (*temperatures)[i]);
@@ -219,7 +219,7 @@ void MainWindow::writeReport() {
   const QString folder =
       QFileDialog::getSaveFileName(this, tr("Folder of the report"), QStringLiteral("report"));
   if (folder.isEmpty()) return;
-  const Experiment document = m_workspace.experiment();
+  const Experiment document = m_workspace.document().experiment();
   const std::string out = folder.toStdString();
   const auto missing = std::make_shared<std::string>();
   m_workspace.jobs().start(

@@ -76,7 +76,7 @@ void MainWindow::buildFileMenu() {
   add(menu, "addMotion", tr("Add natural motion…"), tr("Ctrl+I"), [this] { addMotionFiles(); });
   add(menu, "addModel", tr("Add models…"), tr("Ctrl+M"), [this] { addModels(); });
   m_reload = add(menu, "reloadNatural", tr("Reload natural motion"), tr("F5"),
-                 [this] { m_workspace.readNatural(); });
+                 [this] { m_workspace.natural().read(); });
   menu->addSeparator();
   add(menu, "save", tr("Save"), QKeySequence::Save, [this] { save(); });
   add(menu, "saveAs", tr("Save as…"), tr("Ctrl+Shift+S"), [this] { saveAs(); });
@@ -94,21 +94,23 @@ void MainWindow::refreshRecent() {
 
 void MainWindow::buildEditMenu() {
   QMenu* menu = menuBar()->addMenu(tr("&Edit"));
-  m_undo = add(menu, "undo", tr("Undo"), QKeySequence::Undo, [this] { m_workspace.undo(); });
-  m_redo = add(menu, "redo", tr("Redo"), tr("Ctrl+Shift+Z"), [this] { m_workspace.redo(); });
+  m_undo =
+      add(menu, "undo", tr("Undo"), QKeySequence::Undo, [this] { m_workspace.document().undo(); });
+  m_redo =
+      add(menu, "redo", tr("Redo"), tr("Ctrl+Shift+Z"), [this] { m_workspace.document().redo(); });
   m_bringBack = add(menu, "bringBack", tr("Bring back removed motions"), {},
-                    [this] { m_workspace.bringBack(); });
+                    [this] { m_workspace.motions().bringBack(); });
   menu->addSeparator();
   add(menu, "selectNone", tr("Select nothing"), tr("Ctrl+Shift+A"),
-      [this] { m_workspace.select({}); });
+      [this] { m_workspace.view().select({}); });
   add(menu, "clearRange", tr("Clear the time range"), {},
-      [this] { m_workspace.setRange(std::nullopt); });
+      [this] { m_workspace.view().setRange(std::nullopt); });
 }
 
 void MainWindow::buildSampleMenu() {
   QMenu* menu = menuBar()->addMenu(tr("&Sample"));
   add(menu, "sample", tr("Sample the models along the path"), tr("Ctrl+Return"),
-      [this] { m_workspace.sampleCurrentPath(); });
+      [this] { m_workspace.sampling().sampleCurrentPath(); });
   add(menu, "cancel", tr("Cancel reading, sampling and plotting"), tr("Esc"),
       [this] { m_workspace.cancelWork(); });
 }

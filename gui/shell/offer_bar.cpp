@@ -24,14 +24,14 @@ OfferBar::OfferBar(Workspace& workspace, QWidget* parent)
   addWidget(m_text);
   addWidget(sample);
   addWidget(dismiss);
-  connect(sample, &QPushButton::clicked, &workspace, &Workspace::sampleOffered);
-  connect(dismiss, &QPushButton::clicked, &workspace, &Workspace::dismissOffered);
-  connect(&workspace, &Workspace::offeredChanged, this, &OfferBar::refresh);
+  connect(sample, &QPushButton::clicked, &workspace.kept(), &KeptSets::sampleOffered);
+  connect(dismiss, &QPushButton::clicked, &workspace.kept(), &KeptSets::dismissOffered);
+  connect(&workspace.kept(), &KeptSets::offeredChanged, this, &OfferBar::refresh);
   refresh();
 }
 
 void OfferBar::refresh() {
-  const auto& sets = m_workspace.offered();
+  const auto& sets = m_workspace.kept().offered();
   QStringList names;
   constexpr size_t kNamed = 3;
   for (size_t i = 0; i < sets.size() && i < kNamed; ++i)

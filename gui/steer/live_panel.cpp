@@ -71,8 +71,8 @@ class LivePanel : public QWidget {
     layout->addWidget(m_rate);
     m_timer.setInterval(kDrawEveryMs);
     connect(&m_timer, &QTimer::timeout, this, &LivePanel::takeNews);
-    connect(&workspace, &Workspace::documentChanged, this, &LivePanel::refresh);
-    connect(&workspace, &Workspace::documentOpened, this, &LivePanel::forget);
+    connect(&workspace.document(), &Document::changed, this, &LivePanel::refresh);
+    connect(&workspace, &Workspace::opened, this, &LivePanel::forget);
     connect(m_controls, &LiveControls::changed, this, &LivePanel::steer);
     refresh();
   }
@@ -109,15 +109,16 @@ class LivePanel : public QWidget {
   }
 
   void start() {
-    const Experiment& e = m_workspace.experiment();
+    const Experiment& e = m_workspace.document().experiment();
     dropLiveGroups();
     m_systems.clear();
     std::vector<LiveModel> models;
     for (size_t i = 0; i < e.systems.size(); ++i) {
       if (m_models->currentIndex() > 0 && static_cast<int>(i) != m_models->currentIndex() - 1)
         continue;
-      const std::string file = m_workspace.modelFile(e.systems[i]);
-      models.push_back({e.systems[i].name, [this, file] { return m_workspace.model(file); },
+      const std::string file = m_workspace.document().modelFile(e.systems[i]);
+      models.push_back({e.systems[i].name,
+                        [this, file] { return m_workspace.models().model(file); },
                         e.systems[i].temperature, e.systems[i].options});
       m_systems.push_back(e.systems[i]);
     }
@@ -228,7 +229,7 @@ class LivePanel : public QWidget {
   }
 
   int colourIndexAt(size_t i) const {
-    return std::max(0, m_workspace.systemIndex(m_systems[i].name));
+    return std::max(0, m_workspace.document().systemIndex(m_systems[i].name));
   }
   QColor colourAt(size_t i) const {
     return shownColour(render::colourOf(colourIndexAt(i)), isDark(palette()));
@@ -271,26 +272,26 @@ class LivePanel : public QWidget {
       const std::vector<Motion> motions{
           {std::make_shared<const Clip>(shownPart(m_clips[i])), {}, true}};
       endS = std::max(endS, (motions.front().clip->frameCount() - 1) / motions.front().clip->fps);
-      if (i < m_groups.size() && m_workspace.group(m_groups[i]) != nullptr)
-        m_workspace.setMotions(m_groups[i], motions);
+      if (i < m_groups.size() && m_workspace.motions().group(m_groups[i]) != nullptr)
+        m_workspace.motions().setMotions(m_groups[i], motions);
       else if (i >= m_groups.size())
-        m_groups.push_back(m_workspace.addGroup({.name = "Live – " + m_systems[i].name,
-                                                 .system = m_systems[i].name,
-                                                 .colourIndex = colourIndexAt(i),
-                                                 .pinned = true,
-                                                 .complete = false,
-                                                 .recipe = {},
-                                                 .modelHash = {},
-                                                 .wanted = {},
-                                                 .motions = motions}));
+        m_groups.push_back(m_workspace.motions().add({.name = "Live – " + m_systems[i].name,
+                                                      .system = m_systems[i].name,
+                                                      .colourIndex = colourIndexAt(i),
+                                                      .pinned = true,
+                                                      .complete = false,
+                                                      .recipe = {},
+                                                      .modelHash = {},
+                                                      .wanted = {},
+                                                      .motions = motions}));
     }
-    if (endS > 0.0) m_workspace.setTime(endS);
+    if (endS > 0.0) m_workspace.view().setTime(endS);
     m_sceneMs = static_cast<int>(clock.elapsed());
     m_sinceScene.start();
   }
 
   void dropLiveGroups() {
-    for (const int group : m_groups) m_workspace.removeGroup(group);
+    for (const int group : m_groups) m_workspace.motions().remove(group);
     m_groups.clear();
   }
 
@@ -299,7 +300,7 @@ class LivePanel : public QWidget {
     stop();
     if (!m_kept) return;
     auto groups = std::make_shared<std::vector<MotionGroup>>();
-    const Experiment& e = m_workspace.experiment();
+    const Experiment& e = m_workspace.document().experiment();
     const auto base = SampleRecipe{
         .system = {}, .path = {}, .samples = 1, .seed = m_seed, .fps = e.fps, .folder = e.folder};
     std::vector<int> colours;
@@ -316,16 +317,16 @@ class LivePanel : public QWidget {
         },
         [self, groups, workspace = &m_workspace] {
           if (self) self->dropLiveGroups();
-          for (MotionGroup& group : *groups) workspace->addGroup(std::move(group));
+          for (MotionGroup& group : *groups) workspace->motions().add(std::move(group));
         });
     m_kept.reset();
     refresh();
   }
 
   void refresh() {
-    const auto& systems = m_workspace.experiment().systems;
+    const auto& systems = m_workspace.document().experiment().systems;
     const auto gone = [this](const ExperimentSystem& s) {
-      return m_workspace.systemIndex(s.name) < 0;
+      return m_workspace.document().systemIndex(s.name) < 0;
     };
     if (m_session && std::any_of(m_systems.begin(), m_systems.end(), gone)) stop();
     if (m_models->count() != static_cast<int>(systems.size()) + 1) m_models->clear();

@@ -15,8 +15,8 @@ std::vector<MotionId> GaitRows::shownMotions() const {
   std::vector<MotionId> selected;
   std::vector<MotionId> first;
   std::set<int> groups;
-  for (const MotionId& id : m_workspace.visibleMotions()) {
-    if (m_workspace.selected(id)) selected.push_back(id);
+  for (const MotionId& id : m_workspace.motions().visibleMotions()) {
+    if (m_workspace.view().selected(id)) selected.push_back(id);
     if (groups.insert(id.group).second) first.push_back(id);
   }
   return selected.empty() ? first : selected;
@@ -45,7 +45,7 @@ std::vector<GaitRow> GaitRows::rows(const stats::ContactRule& rule) {
   std::vector<GaitRow> out;
   std::set<const Clip*> used;
   for (const MotionId& id : shown) {
-    const MotionGroup& group = *m_workspace.group(id.group);
+    const MotionGroup& group = *m_workspace.motions().group(id.group);
     const ClipPtr& clip = group.motions[static_cast<size_t>(id.index)].clip;
     const Entry& entry = entryOf(clip);
     used.insert(clip.get());

@@ -15,8 +15,8 @@ GaitView::GaitView(Workspace& workspace, const TimeRuler& ruler, QWidget* parent
   setObjectName(QStringLiteral("timelineGait"));
   setAccessibleName(tr("Foot contacts over time"));
   setFont(readableFont(font()));
-  connect(&workspace, &Workspace::timeChanged, this, qOverload<>(&QWidget::update));
-  connect(&workspace, &Workspace::rangeChanged, this, qOverload<>(&QWidget::update));
+  connect(&workspace.view(), &View::timeChanged, this, qOverload<>(&QWidget::update));
+  connect(&workspace.view(), &View::rangeChanged, this, qOverload<>(&QWidget::update));
   connect(&ruler, &TimeRuler::axisChanged, this, qOverload<>(&QWidget::update));
 }
 
@@ -91,7 +91,7 @@ void GaitView::paintEvent(QPaintEvent* /*event*/) {
     painter.drawText(QPointF(axis.left, height() - kSpacing),
                      tr("%1 more selected motions are not shown").arg(m_leftOut));
   }
-  if (const auto& range = m_workspace.range()) {
+  if (const auto& range = m_workspace.view().range()) {
     QColor veil = inks.background;
     veil.setAlpha(170);
     const double begin = axis.x(std::clamp(range->beginS, 0.0, axis.seconds));
@@ -100,7 +100,7 @@ void GaitView::paintEvent(QPaintEvent* /*event*/) {
     painter.fillRect(QRectF(end, 0, axis.right - end, height()), veil);
   }
   painter.setPen(QPen(inks.warning, 1.6));
-  const double x = axis.x(m_workspace.time());
+  const double x = axis.x(m_workspace.view().time());
   painter.drawLine(QPointF(x, 0), QPointF(x, height()));
 }
 
@@ -128,13 +128,13 @@ render::ChartGrid GaitView::chart() const {
 }
 
 void GaitView::mousePressEvent(QMouseEvent* event) {
-  if (event->button() == Qt::LeftButton && m_workspace.duration() > 0.0)
-    m_workspace.setTime(m_ruler.axis().at(event->localPos().x()));
+  if (event->button() == Qt::LeftButton && m_workspace.motions().duration() > 0.0)
+    m_workspace.view().setTime(m_ruler.axis().at(event->localPos().x()));
 }
 
 void GaitView::mouseMoveEvent(QMouseEvent* event) {
-  if (event->buttons().testFlag(Qt::LeftButton) && m_workspace.duration() > 0.0)
-    m_workspace.setTime(m_ruler.axis().at(event->localPos().x()));
+  if (event->buttons().testFlag(Qt::LeftButton) && m_workspace.motions().duration() > 0.0)
+    m_workspace.view().setTime(m_ruler.axis().at(event->localPos().x()));
 }
 
 bool GaitView::event(QEvent* event) {

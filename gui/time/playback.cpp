@@ -14,24 +14,24 @@ Playback::Playback(Workspace& workspace, QObject* parent)
   m_tick.setTimerType(Qt::PreciseTimer);
   connect(&m_tick, &QTimer::timeout, this, &Playback::advance);
   // Scrubbing while it plays goes on from there.
-  connect(&workspace, &Workspace::timeChanged, this, [this] {
+  connect(&workspace.view(), &View::timeChanged, this, [this] {
     if (!m_setting) rebase();
   });
-  connect(&workspace, &Workspace::visibilityChanged, this, [this] {
-    if (m_workspace.duration() <= 0.0) setPlaying(false);
+  connect(&workspace.motions(), &MotionGroups::visibilityChanged, this, [this] {
+    if (m_workspace.motions().duration() <= 0.0) setPlaying(false);
   });
 }
 
 TimeRange Playback::bounds() const {
-  const double end = m_workspace.duration();
-  const auto& range = m_workspace.range();
+  const double end = m_workspace.motions().duration();
+  const auto& range = m_workspace.view().range();
   if (!range) return {0.0, end};
   const double begin = std::clamp(range->beginS, 0.0, end);
   return {begin, std::clamp(range->endS, begin, end)};
 }
 
 void Playback::rebase() {
-  m_from = m_workspace.time();
+  m_from = m_workspace.view().time();
   m_clock.start();
 }
 
@@ -40,8 +40,8 @@ void Playback::setPlaying(bool playing) {
   const TimeRange all = bounds();
   if (playing && all.endS <= all.beginS) return;
   if (playing) {
-    const double now = m_workspace.time();
-    if (now >= all.endS - 1e-6 || now < all.beginS) m_workspace.setTime(all.beginS);
+    const double now = m_workspace.view().time();
+    if (now >= all.endS - 1e-6 || now < all.beginS) m_workspace.view().setTime(all.beginS);
     rebase();
     m_tick.start();
   } else {
@@ -56,15 +56,15 @@ void Playback::setSpeed(double factor) {
 }
 
 void Playback::goTo(double seconds) {
-  m_workspace.setTime(seconds);
+  m_workspace.view().setTime(seconds);
 }
 
 void Playback::step(int frames) {
   setPlaying(false);
-  const double fps = m_workspace.experiment().fps;
+  const double fps = m_workspace.document().experiment().fps;
   // From the frame that is shown, so that steps meet frames exactly.
-  const double frame = std::round(m_workspace.time() * fps) + frames;
-  goTo(std::clamp(frame / fps, 0.0, m_workspace.duration()));
+  const double frame = std::round(m_workspace.view().time() * fps) + frames;
+  goTo(std::clamp(frame / fps, 0.0, m_workspace.motions().duration()));
 }
 
 void Playback::advance() {
@@ -74,7 +74,7 @@ void Playback::advance() {
   const bool over = now >= all.endS;
   if (over && m_loop && length > 0.0) now = all.beginS + std::fmod(now - all.beginS, length);
   m_setting = true;
-  m_workspace.setTime(std::min(now, all.endS));
+  m_workspace.view().setTime(std::min(now, all.endS));
   m_setting = false;
   if (over && (!m_loop || length <= 0.0)) setPlaying(false);
 }

@@ -29,11 +29,11 @@ TimeRuler::TimeRuler(Workspace& workspace, QWidget* parent)
       tr("Drag to move in time. Shift drag, or drag on the strip, to choose a range; "
          "double-click the strip to drop it."));
   setFont(readableFont(font()));
-  connect(&workspace, &Workspace::timeChanged, this, qOverload<>(&QWidget::update));
-  connect(&workspace, &Workspace::rangeChanged, this, qOverload<>(&QWidget::update));
-  connect(&workspace, &Workspace::visibilityChanged, this, &TimeRuler::updateAxis);
-  connect(&workspace, &Workspace::motionsChanged, this, &TimeRuler::updateAxis);
-  connect(&workspace, &Workspace::documentChanged, this, qOverload<>(&QWidget::update));
+  connect(&workspace.view(), &View::timeChanged, this, qOverload<>(&QWidget::update));
+  connect(&workspace.view(), &View::rangeChanged, this, qOverload<>(&QWidget::update));
+  connect(&workspace.motions(), &MotionGroups::visibilityChanged, this, &TimeRuler::updateAxis);
+  connect(&workspace.motions(), &MotionGroups::changed, this, &TimeRuler::updateAxis);
+  connect(&workspace.document(), &Document::changed, this, qOverload<>(&QWidget::update));
   updateAxis();
 }
 
@@ -47,7 +47,7 @@ int TimeRuler::stripTop() const {
 
 void TimeRuler::updateAxis() {
   const int bar = style()->pixelMetric(QStyle::PM_ScrollBarExtent);
-  const double seconds = m_workspace.duration();
+  const double seconds = m_workspace.motions().duration();
   // Room for a scroll bar below is kept at all times, so that nothing jumps when it appears.
   m_axis = {.left = std::min(kNames, width() * 0.3),
             .right = std::max(width() - bar - 2.0 * kMargin, width() * 0.3 + 10.0),
@@ -61,7 +61,7 @@ void TimeRuler::resizeEvent(QResizeEvent* /*event*/) {
 }
 
 void TimeRuler::paintTicks(QPainter& painter, const Inks& inks) const {
-  const double fps = m_workspace.experiment().fps;
+  const double fps = m_workspace.document().experiment().fps;
   const int wanted = std::max(2, static_cast<int>((m_axis.right - m_axis.left) / kPixelsPerTick));
   const render::Ticks ticks = render::niceTicks(0.0, m_axis.seconds, wanted);
   const int line = fontMetrics().height();
@@ -89,7 +89,7 @@ void TimeRuler::paintTicks(QPainter& painter, const Inks& inks) const {
 void TimeRuler::paintStrip(QPainter& painter, const Inks& inks) const {
   const QRectF strip(m_axis.left, stripTop(), m_axis.right - m_axis.left, kStrip);
   painter.fillRect(strip, inks.grid);
-  if (const auto& range = m_workspace.range()) {
+  if (const auto& range = m_workspace.view().range()) {
     QRectF part = strip;
     part.setLeft(m_axis.x(std::clamp(range->beginS, 0.0, m_axis.seconds)));
     part.setRight(m_axis.x(std::clamp(range->endS, 0.0, m_axis.seconds)));
@@ -101,11 +101,11 @@ void TimeRuler::paintEvent(QPaintEvent* /*event*/) {
   QPainter painter(this);
   const Inks inks = inksOf(palette());
   painter.fillRect(rect(), inks.background);
-  if (m_workspace.duration() <= 0.0) return;
+  if (m_workspace.motions().duration() <= 0.0) return;
   paintTicks(painter, inks);
   paintStrip(painter, inks);
   painter.setRenderHint(QPainter::Antialiasing);
-  const double x = m_axis.x(m_workspace.time());
+  const double x = m_axis.x(m_workspace.view().time());
   painter.setPen(QPen(inks.warning, 1.6));
   painter.drawLine(QPointF(x, 0), QPointF(x, height()));
   painter.setBrush(inks.warning);
@@ -113,28 +113,29 @@ void TimeRuler::paintEvent(QPaintEvent* /*event*/) {
 }
 
 double TimeRuler::snapped(double x) const {
-  const double fps = m_workspace.experiment().fps;
+  const double fps = m_workspace.document().experiment().fps;
   const double seconds = std::clamp(m_axis.at(x), 0.0, m_axis.seconds);
   return std::min(std::round(seconds * fps) / fps, m_axis.seconds);
 }
 
 void TimeRuler::mousePressEvent(QMouseEvent* event) {
-  if (event->button() != Qt::LeftButton || m_workspace.duration() <= 0.0) return;
+  if (event->button() != Qt::LeftButton || m_workspace.motions().duration() <= 0.0) return;
   const QPointF at = event->localPos();
   const bool range = event->modifiers().testFlag(Qt::ShiftModifier) || at.y() >= stripTop();
   m_drag = range ? Drag::Range : Drag::Time;
   m_anchorS = snapped(at.x());
-  if (!range) m_workspace.setTime(m_anchorS);
+  if (!range) m_workspace.view().setTime(m_anchorS);
 }
 
 void TimeRuler::mouseMoveEvent(QMouseEvent* event) {
   const QPointF at = event->localPos();
   setCursor(at.y() >= stripTop() ? Qt::SizeHorCursor : Qt::ArrowCursor);
   const double seconds = snapped(at.x());
-  if (m_drag == Drag::Time) m_workspace.setTime(seconds);
+  if (m_drag == Drag::Time) m_workspace.view().setTime(seconds);
   const bool far = std::abs(m_axis.x(m_anchorS) - at.x()) >= kShortestPixels;
   if (m_drag == Drag::Range && far && seconds != m_anchorS)
-    m_workspace.setRange(TimeRange{std::min(m_anchorS, seconds), std::max(m_anchorS, seconds)});
+    m_workspace.view().setRange(
+        TimeRange{std::min(m_anchorS, seconds), std::max(m_anchorS, seconds)});
 }
 
 void TimeRuler::mouseReleaseEvent(QMouseEvent* /*event*/) {
@@ -143,7 +144,7 @@ void TimeRuler::mouseReleaseEvent(QMouseEvent* /*event*/) {
 
 void TimeRuler::mouseDoubleClickEvent(QMouseEvent* event) {
   if (event->localPos().y() >= stripTop())
-    m_workspace.setRange(std::nullopt);
+    m_workspace.view().setRange(std::nullopt);
   else
     mousePressEvent(event);
 }

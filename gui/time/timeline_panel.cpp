@@ -13,7 +13,6 @@
 #include "gui/time/playback.h"
 #include "gui/time/time_ruler.h"
 #include "gui/time/transport_icons.h"
-#include "gui/workspace/contact_tolerance.h"
 
 namespace marey::gui {
 namespace {
@@ -23,7 +22,6 @@ class TimelinePanel : public QWidget {
   TimelinePanel(Workspace& workspace, QWidget* parent)
       : QWidget(parent),
         m_workspace(workspace),
-        m_contacts(ContactTolerance::of(workspace)),
         m_gaitRows(workspace),
         m_playback(new Playback(workspace, this)) {
     setObjectName(QStringLiteral("timelinePanel"));
@@ -92,7 +90,7 @@ class TimelinePanel : public QWidget {
     addTolerance(bar);
     m_clear =
         button(bar, "timelineClearRange", tr("Clear range"), tr("All of the time counts again"), {},
-               Qt::WindowShortcut, [this] { m_workspace.setRange(std::nullopt); });
+               Qt::WindowShortcut, [this] { m_workspace.view().setRange(std::nullopt); });
     m_clear->defaultAction()->setIconText(tr("Clear range"));
     return bar;
   }
@@ -127,7 +125,7 @@ class TimelinePanel : public QWidget {
     m_frame->setObjectName(QStringLiteral("timelineFrame"));
     m_frame->setToolTip(tr("Go to a frame at the document's rate; frame 0 is at 0 s (G)"));
     connect(m_frame, qOverload<int>(&QSpinBox::valueChanged), this, [this](int frame) {
-      if (!m_updating) m_playback->goTo(frame / m_workspace.experiment().fps);
+      if (!m_updating) m_playback->goTo(frame / m_workspace.document().experiment().fps);
     });
     bar->addWidget(m_frame);
     m_frameCount = new QLabel(this);
@@ -177,16 +175,16 @@ class TimelinePanel : public QWidget {
     m_tolerance->setRange(0.3, 200.0);
     m_tolerance->setDecimals(1);
     m_tolerance->setSingleStep(1.0);
-    m_tolerance->setValue(m_contacts.cmS());
+    m_tolerance->setValue(m_workspace.view().contactToleranceCmS());
     m_tolerance->setSuffix(tr(" cm/s"));
     m_tolerance->setToolTip(
         tr("A foot rests while it is slower than this over the floor; the 3D "
            "view marks the same contacts"));
     label->setBuddy(m_tolerance);
-    connect(m_tolerance, qOverload<double>(&QDoubleSpinBox::valueChanged), &m_contacts,
-            &ContactTolerance::set);
-    connect(&m_contacts, &ContactTolerance::changed, this, [this] {
-      m_tolerance->display(m_contacts.cmS());
+    connect(m_tolerance, qOverload<double>(&QDoubleSpinBox::valueChanged), &m_workspace.view(),
+            &View::setContactToleranceCmS);
+    connect(&m_workspace.view(), &View::contactToleranceChanged, this, [this] {
+      m_tolerance->display(m_workspace.view().contactToleranceCmS());
       updateRows();
     });
     bar->addWidget(label);
@@ -200,12 +198,12 @@ class TimelinePanel : public QWidget {
     const auto later = [this] {
       if (!m_rowsTimer.isActive()) m_rowsTimer.start();
     };
-    connect(&m_workspace, &Workspace::motionsChanged, this, later);
-    connect(&m_workspace, &Workspace::visibilityChanged, this, later);
-    connect(&m_workspace, &Workspace::selectionChanged, this, later);
-    connect(&m_workspace, &Workspace::documentChanged, this, later);
-    connect(&m_workspace, &Workspace::timeChanged, this, [this] { updateTime(); });
-    connect(&m_workspace, &Workspace::rangeChanged, this, [this] { updateTime(); });
+    connect(&m_workspace.motions(), &MotionGroups::changed, this, later);
+    connect(&m_workspace.motions(), &MotionGroups::visibilityChanged, this, later);
+    connect(&m_workspace.view(), &View::selectionChanged, this, later);
+    connect(&m_workspace.document(), &Document::changed, this, later);
+    connect(&m_workspace.view(), &View::timeChanged, this, [this] { updateTime(); });
+    connect(&m_workspace.view(), &View::rangeChanged, this, [this] { updateTime(); });
   }
 
   void updatePlay() {
@@ -227,8 +225,8 @@ class TimelinePanel : public QWidget {
   }
 
   void updateRows() {
-    const std::vector<GaitRow> rows = m_gaitRows.rows(m_contacts.rule());
-    const bool motions = m_workspace.duration() > 0.0;
+    const std::vector<GaitRow> rows = m_gaitRows.rows(m_workspace.contactRule());
+    const bool motions = m_workspace.motions().duration() > 0.0;
     m_gait->setHint(motions ? tr("No joints of contact were found: name the feet in the document.")
                             : tr("Motions that you open or sample play here."));
     m_gait->setRows(rows, m_gaitRows.leftOut());
@@ -236,24 +234,24 @@ class TimelinePanel : public QWidget {
   }
 
   void updateTime() {
-    const double fps = m_workspace.experiment().fps;
-    const double seconds = m_workspace.duration();
+    const double fps = m_workspace.document().experiment().fps;
+    const double seconds = m_workspace.motions().duration();
     const int last = static_cast<int>(std::floor(seconds * fps + 1e-6));
     m_updating = true;
     m_frame->setRange(0, last);
-    m_frame->display(static_cast<int>(std::lround(m_workspace.time() * fps)));
+    m_frame->display(static_cast<int>(std::lround(m_workspace.view().time() * fps)));
     m_updating = false;
     m_frameCount->setText(tr("of %1").arg(last));
-    QString text = tr("%1 of %2 s").arg(m_workspace.time(), 0, 'f', 2).arg(seconds, 0, 'f', 2);
-    if (const auto& range = m_workspace.range())
+    QString text =
+        tr("%1 of %2 s").arg(m_workspace.view().time(), 0, 'f', 2).arg(seconds, 0, 'f', 2);
+    if (const auto& range = m_workspace.view().range())
       text += tr(" · range %1 to %2 s").arg(range->beginS, 0, 'f', 2).arg(range->endS, 0, 'f', 2);
     m_label->setText(text);
-    m_clear->defaultAction()->setEnabled(m_workspace.range().has_value());
+    m_clear->defaultAction()->setEnabled(m_workspace.view().range().has_value());
     m_play->defaultAction()->setEnabled(seconds > 0.0);
   }
 
   Workspace& m_workspace;
-  ContactTolerance& m_contacts;
   GaitRows m_gaitRows;
   Playback* m_playback;
   TimeRuler* m_ruler = nullptr;

@@ -65,7 +65,7 @@ class CheckpointPanel : public QWidget {
       m_strip->setCurrentRow(m_table->currentRow());
     });
     connect(m_table, &QTableWidget::itemChanged, this, &CheckpointPanel::refreshButton);
-    connect(&workspace, &Workspace::documentChanged, this, &CheckpointPanel::refreshButton);
+    connect(&workspace.document(), &Document::changed, this, &CheckpointPanel::refreshButton);
     connect(&m_timer, &QTimer::timeout, this, [this] {
       if (isVisible() && !m_folder->text().isEmpty() && written() != m_written) readRun(false);
     });
@@ -75,7 +75,7 @@ class CheckpointPanel : public QWidget {
     });
     connect(&workspace, &Workspace::viewOpened, this, [this](const ViewState& view) {
       if (view.trainingRun.empty()) return;
-      const fs::path folder = m_workspace.experiment().folder / view.trainingRun;
+      const fs::path folder = m_workspace.document().experiment().folder / view.trainingRun;
       m_folder->setText(QString::fromStdString(folder.string()));
       readRun(false);
     });
@@ -186,14 +186,14 @@ class CheckpointPanel : public QWidget {
 
   void refreshButton() {
     const auto count = static_cast<int>(marked().size());
-    m_sample->setEnabled(count > 0 && !m_workspace.experiment().paths.empty());
+    m_sample->setEnabled(count > 0 && !m_workspace.document().experiment().paths.empty());
     m_sample->setText(count == m_table->rowCount() ? tr("Sample all (%1)").arg(count)
                                                    : tr("Sample the marked ones (%1)").arg(count));
   }
 
   void sampleAll() {
-    const Experiment& e = m_workspace.experiment();
-    const ExperimentPath path = e.paths[static_cast<size_t>(m_workspace.currentPath())];
+    const Experiment& e = m_workspace.document().experiment();
+    const ExperimentPath path = e.paths[static_cast<size_t>(m_workspace.document().currentPath())];
     for (const int row : marked()) {
       const Checkpoint& checkpoint = m_run.checkpoints[static_cast<size_t>(row)];
       SampleRecipe recipe;
@@ -205,11 +205,11 @@ class CheckpointPanel : public QWidget {
       recipe.fps = e.fps;
       recipe.folder = e.folder;
       int old = -1;
-      for (const MotionGroup& group : m_workspace.groups())
+      for (const MotionGroup& group : m_workspace.motions().groups())
         if (group.recipe && !group.pinned && group.recipe->system.model == recipe.system.model &&
             group.recipe->path.name == path.name)
           old = group.id;
-      m_workspace.sample(recipe, old, render::stageIndex(stageOf(m_run, checkpoint)));
+      m_workspace.sampling().sample(recipe, old, render::stageIndex(stageOf(m_run, checkpoint)));
     }
   }
 

@@ -64,9 +64,9 @@ CheckpointStrip::CheckpointStrip(Workspace& workspace, QWidget* parent)
   setMinimumWidth(kWidth + 40);
   connect(this, &QListWidget::itemClicked, this,
           [this](const QListWidgetItem* item) { choose(row(item)); });
-  for (const auto changed :
-       {&Workspace::motionsChanged, &Workspace::currentPathChanged, &Workspace::documentChanged})
-    connect(&workspace, changed, this, &CheckpointStrip::refresh);
+  connect(&workspace.motions(), &MotionGroups::changed, this, &CheckpointStrip::refresh);
+  for (const auto changed : {&Document::currentPathChanged, &Document::changed})
+    connect(&workspace.document(), changed, this, &CheckpointStrip::refresh);
   connect(&workspace.jobs(), &JobQueue::ended, this, [this](int job) {
     if (job != m_job) return;
     m_job = -1;
@@ -90,12 +90,12 @@ void CheckpointStrip::showEvent(QShowEvent* event) {
 }
 
 const MotionGroup* CheckpointStrip::motionsOf(const Checkpoint& checkpoint) const {
-  const Experiment& e = m_workspace.experiment();
+  const Experiment& e = m_workspace.document().experiment();
   if (e.paths.empty()) return nullptr;
-  const std::string& path = e.paths[static_cast<size_t>(m_workspace.currentPath())].name;
+  const std::string& path = e.paths[static_cast<size_t>(m_workspace.document().currentPath())].name;
   const std::string model = std::filesystem::absolute(checkpoint.file).string();
   const MotionGroup* newest = nullptr;
-  for (const MotionGroup& group : m_workspace.groups())
+  for (const MotionGroup& group : m_workspace.motions().groups())
     if (group.recipe && group.recipe->system.model == model && group.recipe->path.name == path &&
         !group.motions.empty())
       newest = &group;
@@ -161,10 +161,10 @@ void CheckpointStrip::drawMissing() {
 void CheckpointStrip::choose(int index) {
   if (index < 0) return;
   if (const MotionGroup* group = motionsOf(m_run.checkpoints[static_cast<size_t>(index)])) {
-    Selection next{.motions = {}, .joint = m_workspace.selection().joint};
+    Selection next{.motions = {}, .joint = m_workspace.view().selection().joint};
     for (size_t i = 0; i < group->motions.size(); ++i)
       next.motions.insert({group->id, static_cast<int>(i)});
-    m_workspace.select(std::move(next));
+    m_workspace.view().select(std::move(next));
   }
   Q_EMIT checkpointClicked(index);
 }

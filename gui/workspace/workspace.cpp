@@ -1,7 +1,8 @@
-// The document and its history.
 #include "gui/workspace/workspace.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
 #include <utility>
 
 #include "families.h"
@@ -28,83 +29,73 @@ bool measuresOtherwise(const Experiment& a, const Experiment& b) {
 Workspace::Workspace(JobQueue& jobs, Experiment experiment, QObject* parent)
     : QObject(parent),
       m_jobs(jobs),
-      m_history(experiment),
-      m_saved(std::move(experiment)),
-      m_models(std::make_shared<ModelCache>(modelFamilies())) {
-  connect(&m_jobs, &JobQueue::failed, this, &Workspace::errorReported);
-  connect(&m_jobs, &JobQueue::ended, this, &Workspace::jobEnded);
+      m_models(std::make_shared<ModelCache>(modelFamilies())),
+      m_document(std::move(experiment)),
+      m_view(m_motions),
+      m_natural({m_jobs, m_models, m_document, m_motions}),
+      m_sampling({m_jobs, m_models, m_document, m_motions}, m_natural),
+      m_kept(m_document, m_motions, m_natural, m_sampling) {
+  connectPieces();
 }
 
 Workspace::~Workspace() {
   m_jobs.stop();  // running work uses the models kept here
 }
 
+void Workspace::connectPieces() {
+  connect(&m_document, &Document::moving, this, &Workspace::followDocument);
+  connect(&m_document, &Document::moved, this, [this](const Experiment& before) {
+    const Experiment& now = m_document.experiment();
+    if (now.natural != before.natural || now.fps != before.fps || now.folder != before.folder)
+      m_natural.read();
+    if (m_motionsFollow || measuresOtherwise(before, now)) m_motions.tell();
+  });
+  connect(&m_motions, &MotionGroups::pinsChanged, &m_document, &Document::changed);
+  connect(&m_jobs, &JobQueue::failed, this, &Workspace::errorReported);
+  connect(&m_document, &Document::failed, this, &Workspace::errorReported);
+  connect(&m_natural, &NaturalMotions::failed, this, &Workspace::errorReported);
+  connect(&m_sampling, &Sampling::failed, this, &Workspace::errorReported);
+  connect(&m_natural, &NaturalMotions::noticed, this, &Workspace::noticed);
+  connect(&m_sampling, &Sampling::noticed, this, &Workspace::noticed);
+  connect(&m_kept, &KeptSets::noticed, this, &Workspace::noticed);
+}
+
 void Workspace::report(const QString& title, const QString& error) {
   Q_EMIT errorReported(title, error);
 }
 
-void Workspace::edit(const QString& label, const std::function<void(Experiment&)>& change,
-                     bool amend) {
-  const Experiment before = experiment();
-  Experiment next = before;
-  try {
-    change(next);
-    next = asStored(next);
-  } catch (const std::exception& error) {
-    report(label, QString::fromUtf8(error.what()));
-    return;
-  }
-  const std::string place = changedPlace(before, next);
-  const bool changed = amend ? m_history.amend(std::move(next), label.toStdString(), place)
-                             : m_history.commit(std::move(next), label.toStdString(), place);
-  if (changed) documentMoved(before);
+std::vector<std::string> Workspace::systemNames() const {
+  std::vector<std::string> out;
+  for (const ExperimentSystem& system : m_document.experiment().systems) out.push_back(system.name);
+  return out;
 }
 
-void Workspace::undo() {
-  const Experiment before = experiment();
-  m_history.undo();
-  documentMoved(before);
-}
-
-void Workspace::redo() {
-  const Experiment before = experiment();
-  m_history.redo();
-  documentMoved(before);
-}
-
-void Workspace::goToEdit(size_t index) {
-  const Experiment before = experiment();
-  m_history.goTo(index);
-  documentMoved(before);
-}
-
-void Workspace::documentMoved(const Experiment& before) {
-  const Experiment& now = experiment();
-  const int paths = static_cast<int>(now.paths.size());
-  m_currentPath = std::clamp(m_currentPath, 0, std::max(0, paths - 1));
+void Workspace::followDocument(const Experiment& before) {
   followRenamed(before);
-  std::erase_if(m_leftOut, [this](const std::string& name) { return systemIndex(name) < 0; });
-  bool changed = recolour();
-  if (now.naturalLeftOut != before.naturalLeftOut) {
-    followUse();
-    changed = true;
-  }
-  Q_EMIT documentChanged();
-  if (now.natural != before.natural || now.fps != before.fps || now.folder != before.folder)
-    readNatural();
-  if (changed || measuresOtherwise(before, now)) tellMotions();
+  std::set<std::string> leftOut = m_sampling.leftOut();
+  std::erase_if(leftOut,
+                [this](const std::string& name) { return m_document.systemIndex(name) < 0; });
+  m_sampling.setLeftOut(std::move(leftOut));
+  m_motionsFollow = recolour(m_motions.all(), systemNames());
+  if (m_document.experiment().naturalLeftOut == before.naturalLeftOut) return;
+  m_natural.followUse();
+  m_motionsFollow = true;
 }
 
 void Workspace::followRenamed(const Experiment& before) {
-  const Experiment& now = experiment();
+  const Experiment& now = m_document.experiment();
   if (now.systems.size() != before.systems.size()) return;
   for (size_t i = 0; i < now.systems.size(); ++i) {
     const std::string& old = before.systems[i].name;
     const std::string& name = now.systems[i].name;
-    if (old == name || now.systems[i].model != before.systems[i].model || systemIndex(old) >= 0)
+    if (old == name || now.systems[i].model != before.systems[i].model ||
+        m_document.systemIndex(old) >= 0)
       continue;
-    if (m_leftOut.erase(old) > 0) m_leftOut.insert(name);
-    for (MotionGroup& group : m_groups) {
+    if (!m_sampling.sampled(old)) {
+      m_sampling.setSampled(old, true);
+      m_sampling.setSampled(name, false);
+    }
+    for (MotionGroup& group : m_motions.all()) {
       if (group.system != old) continue;
       group.system = name;
       if (group.name.starts_with(old)) group.name.replace(0, old.size(), name);
@@ -123,65 +114,98 @@ void Workspace::openUnsaved(Experiment experiment, const QString& file) {
 }
 
 void Workspace::start(Experiment experiment, std::optional<Experiment> saved, const QString& file) {
-  m_drawings.clear();
+  m_sampling.forget();
   cancelWork();
   ViewState view = std::exchange(experiment.view, {});
-  m_saved = std::move(saved);
-  m_history = History<Experiment>(std::move(experiment));
-  m_file = file;
-  m_currentPath = 0;
-  m_groups.clear();
-  m_aside.clear();
-  m_leftOut.clear();
-  m_selection = {};
-  m_time = 0.0;
-  m_range.reset();
-  Q_EMIT documentOpened();
-  Q_EMIT documentChanged();
-  tellMotions();
-  Q_EMIT selectionChanged();
-  Q_EMIT rangeChanged();
-  Q_EMIT timeChanged(0.0);
+  m_document.replace(std::move(experiment), std::move(saved), file);
+  m_motions.clear();
+  m_sampling.setLeftOut({});
+  m_view.clear();
+  Q_EMIT opened();
+  Q_EMIT m_document.changed();
+  m_motions.tell();
+  m_view.tell();
   takeView(std::move(view));
-  readNatural();
+  m_natural.read();
+}
+
+void Workspace::takeView(ViewState view) {
+  const auto& paths = m_document.experiment().paths;
+  const auto path = std::find_if(paths.begin(), paths.end(),
+                                 [&](const ExperimentPath& p) { return p.name == view.path; });
+  if (path != paths.end()) m_document.setCurrentPath(static_cast<int>(path - paths.begin()));
+  for (const std::string& system : view.notSampled)
+    if (m_document.systemIndex(system) >= 0) m_sampling.setSampled(system, false);
+  m_natural.showWhenRead(view.natural);
+  m_kept.offer(view.sets);
+  Q_EMIT m_document.changed();  // ticks
+  m_view.setComparison(view.comparison);
+  Q_EMIT m_kept.offeredChanged();
+  Q_EMIT viewOpened(view);
+}
+
+Experiment Workspace::toWrite() {
+  Experiment out = m_document.experiment();
+  ViewState& view = out.view;
+  const auto path = static_cast<size_t>(m_document.currentPath());
+  if (path > 0 && path < out.paths.size()) view.path = out.paths[path].name;
+  view.notSampled.assign(m_sampling.leftOut().begin(), m_sampling.leftOut().end());
+  view.comparison = m_view.comparison();
+  view.natural = m_natural.shown();
+  view.sets = m_kept.toKeep();
+  Q_EMIT viewAsked(view);
+  return out;
 }
 
 void Workspace::save(const QString& file) {
-  Experiment moved = document();
+  Experiment stored = toWrite();
   const fs::path path = file.toStdString();
-  moveToFolder(moved, fs::absolute(path).parent_path());
-  writeExperiment(path, moved);
-  if (moved.view.natural) renameSources(*moved.view.natural);
-  moved.view = {};
-  m_file = file;
-  m_saved = moved;
-  m_savedPins = pinnedSets();
-  if (m_history.commit(moved, "Save in another folder")) tellMotions();
-  // What is edited next is another edit, so that undo comes back to what was saved.
-  m_history.seal();
-  Q_EMIT documentChanged();
+  moveToFolder(stored, fs::absolute(path).parent_path());
+  writeExperiment(path, stored);
+  if (stored.view.natural) m_natural.renameSources(*stored.view.natural);
+  stored.view = {};
+  m_kept.setSaved();
+  if (m_document.setSaved(stored, file)) m_motions.tell();
+  Q_EMIT m_document.changed();
 }
 
-void Workspace::setCurrentPath(int index) {
-  if (index == m_currentPath || index < 0 || index >= static_cast<int>(experiment().paths.size()))
-    return;
-  m_currentPath = index;
-  Q_EMIT currentPathChanged();
+void Workspace::setUsed(const std::vector<MotionId>& ids, bool used) {
+  std::set<std::string> natural;
+  for (const MotionId& id : ids) {
+    const Motion* motion = m_motions.motion(id);
+    if (motion != nullptr && motion->used != used && m_motions.group(id.group)->natural())
+      natural.insert(motion->clip->name);
+  }
+  m_motions.setUsed(ids, used);
+  if (natural.empty()) return;
+  m_document.edit(used ? tr("Use clips") : tr("Leave clips out"), [&](Experiment& e) {
+    std::erase_if(e.naturalLeftOut,
+                  [&](const std::string& name) { return natural.contains(name); });
+    if (!used) e.naturalLeftOut.insert(e.naturalLeftOut.end(), natural.begin(), natural.end());
+  });
+}
+
+std::vector<int> Workspace::feet() const {
+  const auto body = m_motions.skeleton();
+  if (!body) return {};
+  try {
+    return stats::feetOf(*body, m_document.experiment().feet);
+  } catch (const InputError&) {
+    return {};  // a skeleton without feet: nothing to count
+  }
 }
 
 std::vector<std::string> Workspace::motionTypes() const {
-  return marey::motionTypes(experiment(), m_models->held());
+  return marey::motionTypes(m_document.experiment(), m_models->held());
 }
 
-std::string Workspace::modelFile(const ExperimentSystem& system) const {
-  return (experiment().folder / system.model).string();
+stats::ContactRule Workspace::contactRule() const {
+  return {.toleranceCmS = m_view.contactToleranceCmS(), .feet = m_document.experiment().feet};
 }
 
-int Workspace::systemIndex(const std::string& name) const {
-  const auto& systems = experiment().systems;
-  for (size_t i = 0; i < systems.size(); ++i)
-    if (systems[i].name == name) return static_cast<int>(i);
-  return -1;
+void Workspace::cancelWork() {
+  m_jobs.cancelLane(Lane::Models);
+  m_jobs.cancelLane(Lane::Files);
 }
 
 }  // namespace marey::gui

@@ -52,7 +52,7 @@ TEST_F(Checkpoints, HavePicturesThatSelectTheirMotions) {
   EXPECT_FALSE(strip->drawn(0)) << "nothing has been sampled";
   child<QPushButton>(*m_window, "checkpointSample")->click();
   ASSERT_TRUE(waitUntil([&] { return strip->drawn(0) && strip->drawn(1) && m_jobs->idle(); }));
-  const auto& groups = m_workspace->groups();
+  const auto& groups = m_workspace->motions().groups();
   ASSERT_EQ(groups.size(), 3U);
   EXPECT_EQ(render::colourOf(groups[1].colourIndex), render::colourOf(render::stageIndex(0.0)));
   EXPECT_EQ(render::colourOf(groups[2].colourIndex), render::colourOf(render::stageIndex(1.0)));
@@ -65,7 +65,7 @@ TEST_F(Checkpoints, HavePicturesThatSelectTheirMotions) {
   std::set<MotionId> wanted;
   for (int i = 0; i < static_cast<int>(groups[2].motions.size()); ++i)
     wanted.insert({groups[2].id, i});
-  EXPECT_EQ(m_workspace->selection().motions, wanted);
+  EXPECT_EQ(m_workspace->view().selection().motions, wanted);
   EXPECT_TRUE(m_errors.empty()) << m_errors.front();
 }
 
@@ -74,15 +74,15 @@ TEST_F(Checkpoints, ThePathIsJudgedByTheTrainingDataOfAModelThatKnowsThem) {
   auto* source = child<QLabel>(*m_window, "pathRangeSource");
   const auto text = [&] { return source->text().toStdString(); };
   // The model of the demonstration knows its training data, too.
-  m_workspace->edit(QStringLiteral("None"), [](Experiment& e) { e.systems.clear(); });
+  m_workspace->document().edit(QStringLiteral("None"), [](Experiment& e) { e.systems.clear(); });
   ASSERT_TRUE(idle());
   EXPECT_NE(text().find("natural motions"), std::string::npos) << text();
-  m_workspace->edit(QStringLiteral("Model"), [this](Experiment& e) {
+  m_workspace->document().edit(QStringLiteral("Model"), [this](Experiment& e) {
     e.systems.push_back({.name = "Tiny", .model = m_run + "/snapshots/step_0000002.marey"});
   });
   ASSERT_TRUE(idle());
   EXPECT_NE(text().find("training data of Tiny"), std::string::npos) << text();
-  m_workspace->undo();
+  m_workspace->document().undo();
   ASSERT_TRUE(idle());
   EXPECT_NE(text().find("natural motions"), std::string::npos) << text();
 }

@@ -26,7 +26,7 @@ class Counting : public DemoTest {
     return waitUntil([this] { return m_jobs->idle(); });
   }
   void sample() {
-    m_workspace->sampleCurrentPath();
+    m_workspace->sampling().sampleCurrentPath();
     ASSERT_TRUE(idle());
   }
   /// Every cell of the Statistics table, computed anew.
@@ -53,7 +53,7 @@ class Counting : public DemoTest {
   }
   /// A motion of another skeleton, as another model would sample it.
   Motion oddMotion() {
-    Clip clip = *m_workspace->groups().front().motions.front().clip;
+    Clip clip = *m_workspace->motions().groups().front().motions.front().clip;
     Skeleton body = *clip.skeleton;
     body.names.back() = "Tail";
     clip.skeleton = std::make_shared<const Skeleton>(body);
@@ -67,41 +67,43 @@ TEST_F(Counting, HidingMotionsChangesNoNumber) {
   ASSERT_GT(all.size(), 20);
   const QString before = counted("statistics");
   EXPECT_TRUE(before.contains("Natural: 6 of 6")) << qPrintable(before);
-  const int natural = m_workspace->groups().front().id, samples = m_workspace->groups().back().id;
-  m_workspace->setVisible(natural, false);
-  m_workspace->setVisible(MotionId{samples, 0}, false);
+  const int natural = m_workspace->motions().groups().front().id,
+            samples = m_workspace->motions().groups().back().id;
+  m_workspace->motions().setVisible(natural, false);
+  m_workspace->motions().setVisible(MotionId{samples, 0}, false);
   EXPECT_EQ(statistics(), all);
   EXPECT_EQ(counted("statistics"), before);
-  m_workspace->setVisible(MotionId{natural, 2}, true);
+  m_workspace->motions().setVisible(MotionId{natural, 2}, true);
   EXPECT_EQ(statistics(), all);
 }
 
 TEST_F(Counting, LeavingAClipOutIsAnEditOfTheDocument) {
   sample();
   const QStringList all = statistics();
-  const int natural = m_workspace->groups().front().id;
-  const std::string name = m_workspace->motion({natural, 1})->clip->name;
+  const int natural = m_workspace->motions().groups().front().id;
+  const std::string name = m_workspace->motions().motion({natural, 1})->clip->name;
   auto* tree = child<QTreeView>(*m_window->showPanel("library"), "motionTree");
   const auto row = tree->model()->index(1, 4, tree->model()->index(0, 0));
   ASSERT_EQ(row.data(Qt::CheckStateRole), Qt::Checked);
   tree->model()->setData(row, Qt::Unchecked, Qt::CheckStateRole);
-  EXPECT_EQ(m_workspace->experiment().naturalLeftOut, std::vector<std::string>{name});
-  EXPECT_TRUE(m_workspace->motion({natural, 1})->visible) << "it was hidden, too";
+  EXPECT_EQ(m_workspace->document().experiment().naturalLeftOut, std::vector<std::string>{name});
+  EXPECT_TRUE(m_workspace->motions().motion({natural, 1})->visible) << "it was hidden, too";
   EXPECT_NE(statistics(), all);
   EXPECT_TRUE(counted("statistics").contains("Natural: 5 of 6"));
   const fs::path file = fs::path(m_folder.path().toStdString()) / "x.json";
   m_workspace->save(QString::fromStdString(file));
   m_workspace->open(readExperiment(file), QString::fromStdString(file));
   ASSERT_TRUE(idle());
-  EXPECT_FALSE(m_workspace->motion({m_workspace->groups().front().id, 1})->used);
-  m_workspace->edit("All again", [](Experiment& e) { e.naturalLeftOut.clear(); });
-  EXPECT_TRUE(m_workspace->motion({m_workspace->groups().front().id, 1})->used);
+  EXPECT_FALSE(
+      m_workspace->motions().motion({m_workspace->motions().groups().front().id, 1})->used);
+  m_workspace->document().edit("All again", [](Experiment& e) { e.naturalLeftOut.clear(); });
+  EXPECT_TRUE(m_workspace->motions().motion({m_workspace->motions().groups().front().id, 1})->used);
 }
 
 TEST_F(Counting, SamplesThatAreLeftOutComeBack) {
   sample();
   const QStringList all = statistics();
-  const MotionId first{m_workspace->groups().back().id, 0};
+  const MotionId first{m_workspace->motions().groups().back().id, 0};
   m_workspace->setUsed({first}, false);
   EXPECT_NE(statistics(), all);
   m_workspace->setUsed({first}, true);
@@ -111,17 +113,17 @@ TEST_F(Counting, SamplesThatAreLeftOutComeBack) {
 TEST_F(Counting, OneOddFileIsNamedAndTheOthersGoOn) {
   const fs::path odd = fs::path(m_folder.path().toStdString()) / "odd.bvh";
   writeSmallBvh(odd);
-  m_workspace->edit("Add",
-                    [&](Experiment& e) { e.natural.insert(e.natural.begin(), odd.string()); });
+  m_workspace->document().edit(
+      "Add", [&](Experiment& e) { e.natural.insert(e.natural.begin(), odd.string()); });
   ASSERT_TRUE(idle());
-  ASSERT_EQ(m_workspace->groups().front().motions.size(), 7U);
+  ASSERT_EQ(m_workspace->motions().groups().front().motions.size(), 7U);
   ASSERT_EQ(m_errors.size(), 1U) << "nobody was told";
   EXPECT_NE(m_errors.front().find("odd"), std::string::npos) << m_errors.front();
-  EXPECT_GT(m_workspace->skeleton()->jointCount(), 2) << "the odd one stands for all";
-  const std::string system = m_workspace->experiment().systems.front().name;
-  m_workspace->scoreNatural(system);
+  EXPECT_GT(m_workspace->motions().skeleton()->jointCount(), 2) << "the odd one stands for all";
+  const std::string system = m_workspace->document().experiment().systems.front().name;
+  m_workspace->natural().score(system);
   ASSERT_TRUE(idle());
-  const auto* scores = m_workspace->naturalScores(system);
+  const auto* scores = m_workspace->natural().scores(system);
   ASSERT_NE(scores, nullptr) << "one file ended scoring";
   size_t scored = 0;
   for (const ClipScore& score : *scores) scored += score.loglikNats.empty() ? 0 : 1;
@@ -138,7 +140,7 @@ TEST_F(Counting, AModelOfAnotherSkeletonBlanksNoPanel) {
   sample();
   MotionGroup other{.name = "Dog", .system = "Dog", .colourIndex = 1};
   other.motions = {oddMotion(), oddMotion()};
-  m_workspace->addGroup(std::move(other));
+  m_workspace->motions().add(std::move(other));
   EXPECT_GT(statistics().size(), 20);
   EXPECT_TRUE(counted("statistics").contains("Dog: not compared with natural motion"))
       << qPrintable(counted("statistics"));
@@ -197,10 +199,10 @@ TEST_F(Counting, FilesOfAFolderThatAreNotReadAreNamedInMotions) {
   QStringList news;
   QObject::connect(m_workspace.get(), &Workspace::noticed, m_window.get(),
                    [&](const QString& what) { news << what; });
-  m_workspace->edit("Add", [&](Experiment& e) { e.natural = {file("clips").string()}; });
+  m_workspace->document().edit("Add", [&](Experiment& e) { e.natural = {file("clips").string()}; });
   ASSERT_TRUE(idle());
   EXPECT_TRUE(m_errors.empty()) << m_errors.front();
-  ASSERT_EQ(m_workspace->groups().front().motions.size(), 1U);
+  ASSERT_EQ(m_workspace->motions().groups().front().motions.size(), 1U);
   EXPECT_TRUE(news.join(' ').contains("2 files not read")) << qPrintable(news.join(' '));
   const auto* tree = child<QTreeView>(*m_window->showPanel("library"), "motionTree");
   const QModelIndex row = tree->model()->index(0, 0);

@@ -36,7 +36,7 @@ class Documents : public DemoTest {
   /// A copy as a crash of another window would leave it.
   void leaveCopy(const char* name, uint64_t seed) {
     autosaves().mkpath(".");
-    Experiment e = m_workspace->experiment();
+    Experiment e = m_workspace->document().experiment();
     e.seed = seed;
     const Json copy = {{"file", ""}, {"folder", e.folder.string()}, {"experiment", toJson(e)}};
     writeJson(autosaves().filePath(name).toStdString(), copy);
@@ -57,26 +57,26 @@ class Documents : public DemoTest {
 
 TEST_F(Documents, AnyLengthOfAPathCanBeSavedAndOpened) {
   for (const int path : {0, 2}) {
-    m_workspace->setCurrentPath(path);
+    m_workspace->document().setCurrentPath(path);
     for (const double seconds : {0.0, 0.1, 3.0}) {
       child<QDoubleSpinBox>(*m_window->showPanel("path"), "pathSeconds")->setValue(seconds);
       m_workspace->save(QString::fromStdString(file("x.json")));
-      EXPECT_EQ(readExperiment(file("x.json")), m_workspace->experiment()) << seconds;
+      EXPECT_EQ(readExperiment(file("x.json")), m_workspace->document().experiment()) << seconds;
     }
   }
 }
 
 TEST_F(Documents, AnEditThatNoFileCouldHoldIsRefused) {
-  const Experiment before = m_workspace->experiment();
-  m_workspace->edit("Samples", [](Experiment& e) { e.samples = 0; });
-  m_workspace->edit("Twins", [](Experiment& e) { e.paths[1].name = e.paths[0].name; });
-  EXPECT_EQ(m_workspace->experiment(), before);
+  const Experiment before = m_workspace->document().experiment();
+  m_workspace->document().edit("Samples", [](Experiment& e) { e.samples = 0; });
+  m_workspace->document().edit("Twins", [](Experiment& e) { e.paths[1].name = e.paths[0].name; });
+  EXPECT_EQ(m_workspace->document().experiment(), before);
   ASSERT_EQ(m_errors.size(), 2U);
   EXPECT_NE(m_errors[0].find("samples"), std::string::npos) << m_errors[0];
 }
 
 TEST_F(Documents, UnsavedWorkSurvivesACrashUntilItIsDiscarded) {
-  m_workspace->edit("Seed", [](Experiment& e) { e.seed = 4711; });
+  m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 4711; });
   ASSERT_TRUE(waitUntil([&] { return !autosaves().entryList({"*.json"}).isEmpty(); }, 10.0));
   EXPECT_TRUE(Autosave::recover().kept.empty()) << "the copy of a window that is alive was taken";
   const QString copy = autosaves().entryList({"*.json"}).front();
@@ -85,7 +85,7 @@ TEST_F(Documents, UnsavedWorkSurvivesACrashUntilItIsDiscarded) {
     const Recovery found = Autosave::recover();
     ASSERT_EQ(found.kept.size(), 1U);
     EXPECT_EQ(found.kept.front().experiment.seed, 4711U);
-    EXPECT_EQ(found.kept.front().experiment.folder, m_workspace->experiment().folder);
+    EXPECT_EQ(found.kept.front().experiment.folder, m_workspace->document().experiment().folder);
     EXPECT_TRUE(Autosave::recover().kept.empty()) << "two windows were offered one copy";
   }
   const Recovery again = Autosave::recover();
@@ -99,7 +99,7 @@ TEST_F(Documents, RecoveringOneCopyKeepsTheOthers) {
   leaveCopy("b.json", 12);
   answer("recoveryBox", QMessageBox::Open);
   m_window->start({});
-  EXPECT_EQ(m_workspace->experiment().seed, 11U);
+  EXPECT_EQ(m_workspace->document().experiment().seed, 11U);
   EXPECT_TRUE(m_workspace->modified());
   EXPECT_FALSE(autosaves().exists("a.json"));
   EXPECT_TRUE(autosaves().exists("b.json")) << "a copy that nobody was asked about is gone";
@@ -112,7 +112,7 @@ TEST_F(Documents, RecoveringOneCopyKeepsTheOthers) {
 TEST_F(Documents, UndoDoesNotGoBehindWhatWasRecovered) {
   const fs::path saved = file("mine.json");
   m_workspace->save(QString::fromStdString(saved));
-  const Experiment before = m_workspace->experiment();
+  const Experiment before = m_workspace->document().experiment();
   autosaves().mkpath(".");
   Experiment kept = before;
   kept.seed = 4711;
@@ -121,12 +121,12 @@ TEST_F(Documents, UndoDoesNotGoBehindWhatWasRecovered) {
       {{"file", saved.string()}, {"folder", before.folder.string()}, {"experiment", toJson(kept)}});
   answer("recoveryBox", QMessageBox::Open);
   m_window->start({});
-  ASSERT_EQ(m_workspace->experiment(), kept);
+  ASSERT_EQ(m_workspace->document().experiment(), kept);
   EXPECT_TRUE(m_workspace->modified()) << "the file does not hold it";
   EXPECT_FALSE(m_window->command("undo")->isEnabled());
   m_window->command("undo")->trigger();
-  m_workspace->undo();
-  EXPECT_EQ(m_workspace->experiment(), kept);
+  m_workspace->document().undo();
+  EXPECT_EQ(m_workspace->document().experiment(), kept);
   m_window->command("save")->trigger();
   EXPECT_EQ(readExperiment(saved), kept);
   EXPECT_FALSE(m_workspace->modified());
@@ -135,8 +135,8 @@ TEST_F(Documents, UndoDoesNotGoBehindWhatWasRecovered) {
 TEST_F(Documents, AnEmptyDocumentAsksBeforeItReplacesAFileThatIsNot) {
   const fs::path saved = file("mine.json");
   m_workspace->save(QString::fromStdString(saved));
-  const Experiment before = m_workspace->experiment();
-  m_workspace->edit("All away", [](Experiment& e) {
+  const Experiment before = m_workspace->document().experiment();
+  m_workspace->document().edit("All away", [](Experiment& e) {
     e.natural.clear();
     e.systems.clear();
     e.paths.clear();
@@ -163,7 +163,7 @@ TEST_F(Documents, ACopyThatCannotBeReadIsSetAsideAndNamed) {
 }
 
 TEST_F(Documents, SavingRemovesTheCopy) {
-  m_workspace->edit("Seed", [](Experiment& e) { e.seed = 4711; });
+  m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 4711; });
   ASSERT_TRUE(waitUntil([&] { return !autosaves().entryList({"*.json"}).isEmpty(); }, 10.0));
   m_workspace->save(QString::fromStdString(file("saved.json")));
   EXPECT_TRUE(autosaves().entryList({"*.json"}).isEmpty());
@@ -172,23 +172,25 @@ TEST_F(Documents, SavingRemovesTheCopy) {
 TEST_F(Documents, ANewExperimentIsEmptyAndCanBeSavedAndOpened) {
   EXPECT_TRUE(m_window->command("report")->isEnabled());
   m_window->command("new")->trigger();
-  EXPECT_TRUE(m_workspace->experiment().natural.empty());
-  EXPECT_TRUE(m_workspace->groups().empty());
+  EXPECT_TRUE(m_workspace->document().experiment().natural.empty());
+  EXPECT_TRUE(m_workspace->motions().groups().empty());
   EXPECT_FALSE(m_window->command("report")->isEnabled()) << "there is nothing to report";
-  m_workspace->edit("Seed", [](Experiment& e) { e.seed = 2; });
+  m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 2; });
   EXPECT_TRUE(m_errors.empty()) << m_errors.front();
   m_workspace->save(QString::fromStdString(file("new.json")));
   EXPECT_EQ(readExperiment(file("new.json")).seed, 2U);
 }
 
 TEST_F(Documents, FilesOfTheCommandLineGoIntoADocumentOfTheirOwn) {
-  const std::string model = m_workspace->modelFile(m_workspace->experiment().systems.front());
+  const std::string model =
+      m_workspace->document().modelFile(m_workspace->document().experiment().systems.front());
   m_workspace->open({}, {});
   m_window->start({QString::fromStdString(model)});
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
-  EXPECT_TRUE(m_workspace->experiment().natural.empty()) << "the demo's walkers are there too";
-  ASSERT_EQ(m_workspace->experiment().systems.size(), 1U);
-  EXPECT_EQ(m_workspace->experiment().systems.front().model, model);
+  EXPECT_TRUE(m_workspace->document().experiment().natural.empty())
+      << "the demo's walkers are there too";
+  ASSERT_EQ(m_workspace->document().experiment().systems.size(), 1U);
+  EXPECT_EQ(m_workspace->document().experiment().systems.front().model, model);
 }
 
 TEST_F(Documents, AFileThatIsNoModelIsRefusedAndTheDocumentStays) {
@@ -197,51 +199,52 @@ TEST_F(Documents, AFileThatIsNoModelIsRefusedAndTheDocumentStays) {
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
   ASSERT_EQ(m_errors.size(), 1U);
   EXPECT_NE(m_errors.front().find("no.marey"), std::string::npos);
-  EXPECT_EQ(m_workspace->experiment().systems.size(), 1U);
+  EXPECT_EQ(m_workspace->document().experiment().systems.size(), 1U);
 }
 
 TEST_F(Documents, ANaturalFileThatVanishedIsNamedAndReadOnceItIsBack) {
   std::string vanished = file("walk.bvh").string();
-  m_workspace->edit("Add", [&](Experiment& e) { e.natural.push_back(vanished); });
+  m_workspace->document().edit("Add", [&](Experiment& e) { e.natural.push_back(vanished); });
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
   ASSERT_EQ(m_errors.size(), 1U);
   EXPECT_NE(m_errors.front().find("walk.bvh"), std::string::npos);
-  ASSERT_EQ(m_workspace->groups().size(), 1U);
-  EXPECT_EQ(m_workspace->groups().front().motions.size(), 6U) << "the good clips are gone too";
+  ASSERT_EQ(m_workspace->motions().groups().size(), 1U);
+  EXPECT_EQ(m_workspace->motions().groups().front().motions.size(), 6U)
+      << "the good clips are gone too";
   writeSmallBvh(vanished);
   m_window->command("reloadNatural")->trigger();
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
-  EXPECT_EQ(m_workspace->groups().front().motions.size(), 7U);
+  EXPECT_EQ(m_workspace->motions().groups().front().motions.size(), 7U);
   // Its body is no model's: that is told once, and nothing else breaks.
   ASSERT_EQ(m_errors.size(), 2U);
   EXPECT_NE(m_errors.back().find("another skeleton"), std::string::npos) << m_errors.back();
-  m_workspace->scoreNatural(m_workspace->experiment().systems.front().name);
+  m_workspace->natural().score(m_workspace->document().experiment().systems.front().name);
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
   EXPECT_EQ(m_errors.size(), 2U);
-  m_workspace->sampleCurrentPath();
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
-  EXPECT_EQ(m_workspace->groups().size(), 2U);
+  EXPECT_EQ(m_workspace->motions().groups().size(), 2U);
 }
 
 TEST_F(Documents, SettingsAreOneEdit) {
   addPanelCommands(*m_window, *m_workspace);
-  const size_t before = m_workspace->history().size();
+  const size_t before = m_workspace->document().history().size();
   m_window->command("documentSettings")->trigger();
   auto* dialog = child<QDialog>(*m_window, "documentSettings");
   child<QLineEdit>(*dialog, "settingsTitle")->setText("Walks");
   child<QPlainTextEdit>(*dialog, "settingsNotes")->setPlainText("two\nlines");
   child<QDoubleSpinBox>(*dialog, "settingsToleranceStep")->setValue(0.3);
   dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Ok)->click();
-  EXPECT_EQ(m_workspace->experiment().title, "Walks");
-  EXPECT_EQ(m_workspace->experiment().notes, "two\nlines");
-  EXPECT_EQ(m_workspace->experiment().toleranceStepCmS, 0.3);
-  EXPECT_EQ(m_workspace->experiment().fps, 20.0);
-  EXPECT_EQ(m_workspace->history().size(), before + 1);
+  EXPECT_EQ(m_workspace->document().experiment().title, "Walks");
+  EXPECT_EQ(m_workspace->document().experiment().notes, "two\nlines");
+  EXPECT_EQ(m_workspace->document().experiment().toleranceStepCmS, 0.3);
+  EXPECT_EQ(m_workspace->document().experiment().fps, 20.0);
+  EXPECT_EQ(m_workspace->document().history().size(), before + 1);
 }
 
 TEST_F(Documents, SavingUnderAShortNameAsksBeforeItReplacesAFile) {
   std::ofstream(file("there.json")) << "mine";
-  m_workspace->edit("Seed", [](Experiment& e) { e.seed = 3; });
+  m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 3; });
   bool asked = false, named = false;
   QTimer hand;
   QObject::connect(&hand, &QTimer::timeout, [&] {

@@ -49,7 +49,7 @@ class Drawing : public WindowTest {
   }
   void play() {
     for (int frame = 1; frame <= 4; ++frame) {
-      m_workspace->setTime(0.1 * frame);
+      m_workspace->view().setTime(0.1 * frame);
       settle(60);
     }
   }

@@ -50,16 +50,17 @@ class Export : public WindowTest {
     WindowTest::SetUp();
     openWindow();
     openSmallDemo();
-    m_workspace->sampleCurrentPath();
+    m_workspace->sampling().sampleCurrentPath();
     // The last motions are handed over after the job's end.
-    ASSERT_TRUE(waitUntil(
-        [this] { return m_jobs->idle() && m_workspace->groups().back().motions.size() == 2U; }));
-    const MotionGroup& samples = m_workspace->groups().back();
-    m_workspace->select({.motions = {{samples.id, 0}, {samples.id, 1}}});
+    ASSERT_TRUE(waitUntil([this] {
+      return m_jobs->idle() && m_workspace->motions().groups().back().motions.size() == 2U;
+    }));
+    const MotionGroup& samples = m_workspace->motions().groups().back();
+    m_workspace->view().select({.motions = {{samples.id, 0}, {samples.id, 1}}});
     settle();
     m_out = fs::path(m_folder.path().toStdString()) / "out";
     fs::create_directory(m_out);
-    showExportDialog(*m_workspace, m_window.get());
+    showExportDialog(*m_workspace, m_window->shownScene(), m_window.get());
     m_dialog = child<QDialog>(*m_window, "exportDialog");
     child<QLineEdit>(*m_dialog, "exportFolder")->setText(QString::fromStdString(m_out));
     child<QSpinBox>(*m_dialog, "exportWidth")->setValue(160);
@@ -90,7 +91,9 @@ class Export : public WindowTest {
     settle(250);
     return asked;
   }
-  const Clip& shown(int index) { return *m_workspace->groups().back().motions[index].clip; }
+  const Clip& shown(int index) {
+    return *m_workspace->motions().groups().back().motions[index].clip;
+  }
   std::string said() { return child<QLabel>(*m_dialog, "exportDone")->text().toStdString(); }
   std::vector<std::string> written() const {
     std::vector<std::string> out;
@@ -108,13 +111,14 @@ TEST_F(Export, ClipsAreThoseOfTheCommandLineForTheSameDocument) {
   choose(ExportFormat::Npz);
   press();
   ASSERT_EQ(written().size(), 2U);
-  const SampleRecipe& recipe = *m_workspace->groups().back().recipe;
+  const SampleRecipe& recipe = *m_workspace->motions().groups().back().recipe;
   const fs::path cli = fs::path(m_folder.path().toStdString()) / "cli";
-  runProgram(MAREY_BINARY, {"sample", QString::fromStdString(m_workspace->modelFile(recipe.system)),
-                            "--path", QString::fromStdString(recipe.path.path), "--seconds", "2",
-                            "-n", "2", "--seed", QString::number(recipe.seed), "--temperature",
-                            QString::number(recipe.system.temperature), "--format", "npz", "--out",
-                            QString::fromStdString(cli), "--quiet"});
+  runProgram(
+      MAREY_BINARY,
+      {"sample", QString::fromStdString(m_workspace->document().modelFile(recipe.system)), "--path",
+       QString::fromStdString(recipe.path.path), "--seconds", "2", "-n", "2", "--seed",
+       QString::number(recipe.seed), "--temperature", QString::number(recipe.system.temperature),
+       "--format", "npz", "--out", QString::fromStdString(cli), "--quiet"});
   for (int i = 0; i < 2; ++i) {
     const Clip here = io::readClip(m_out / written()[i]);
     expectSamePositions(here, shown(i), 1e-6F);
@@ -162,8 +166,8 @@ TEST_F(Export, RotationsAreFittedAsByConvertAndTheResidualIsShown) {
                             QString::fromStdString(converted), "--quiet"});
   expectSamePositions(io::readClip(bvh), io::readClip(converted), 1e-5F);
   const Json record = readJson(bvh.string() + ".recipe.json");
-  EXPECT_EQ(record["experiment_hash"], experimentHash(m_workspace->experiment()));
-  EXPECT_EQ(record["seed"], m_workspace->groups().back().recipe->seed);
+  EXPECT_EQ(record["experiment_hash"], experimentHash(m_workspace->document().experiment()));
+  EXPECT_EQ(record["seed"], m_workspace->motions().groups().back().recipe->seed);
   EXPECT_TRUE(record.contains("fit"));
 }
 
@@ -211,7 +215,7 @@ TEST_F(Export, ThePictureIsWhatTheSceneShows) {
   };
   detail->setCurrentIndex(3);  // by speed
   child<QAction>(*m_window, "sceneViewFront")->trigger();
-  m_workspace->setTime(1.0);
+  m_workspace->view().setTime(1.0);
   coloured();
   choose(ExportFormat::Still);
   press();
@@ -220,7 +224,7 @@ TEST_F(Export, ThePictureIsWhatTheSceneShows) {
   const Json scene = Json::parse(recipe["scene"].get<std::string>());
   EXPECT_EQ(scene["colour_by"], "speed");
   EXPECT_EQ(scene["time_s"], 1.0);
-  EXPECT_EQ(recipe["seed"], std::to_string(m_workspace->groups().back().recipe->seed));
+  EXPECT_EQ(recipe["seed"], std::to_string(m_workspace->motions().groups().back().recipe->seed));
   EXPECT_TRUE(scene["camera"].contains("eye"));
 
   // Another colour, moment or camera gives another picture; the same give the same.
@@ -234,7 +238,7 @@ TEST_F(Export, ThePictureIsWhatTheSceneShows) {
   coloured();
   const auto bySystem = again();
   EXPECT_NE(bySystem, before);
-  m_workspace->setTime(0.2);
+  m_workspace->view().setTime(0.2);
   settle();
   const auto earlier = again();
   EXPECT_NE(earlier, bySystem);
@@ -244,7 +248,7 @@ TEST_F(Export, ThePictureIsWhatTheSceneShows) {
 
 TEST_F(Export, AFigureMarksTheContactsOfTheTimeline) {
   // Natural motion that walks: what stands still rests whatever the tolerance.
-  m_workspace->select({.motions = {{m_workspace->groups().front().id, 0}}});
+  m_workspace->view().select({.motions = {{m_workspace->motions().groups().front().id, 0}}});
   child<QSpinBox>(*m_dialog, "exportWidth")->setValue(480);
   child<QSpinBox>(*m_dialog, "exportHeight")->setValue(270);
   child<QComboBox>(*m_dialog, "exportLook")->setCurrentIndex(1);
@@ -290,7 +294,7 @@ TEST(Range, HoldsTheFramesAtItsEndsAndNoneBesideAClip) {
 }
 
 TEST_F(Export, OnlyTheMarkedRangeIsWritten) {
-  m_workspace->setRange(TimeRange{0.5, 1.0});
+  m_workspace->view().setRange(TimeRange{0.5, 1.0});
   child<QCheckBox>(*m_dialog, "exportRange")->setChecked(true);
   choose(ExportFormat::Npz);
   press();

@@ -103,7 +103,7 @@ void WindowTest::openSmallDemo() {
   for (ExperimentPath& path : demo.paths) path.seconds = 2.0;
   m_workspace->open(demo, {});
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
-  ASSERT_EQ(m_workspace->groups().size(), 1U);
+  ASSERT_EQ(m_workspace->motions().groups().size(), 1U);
 }
 
 void DemoTest::SetUp() {

@@ -30,7 +30,7 @@ class HeldOut : public DemoTest {
   }
   ExperimentResult asReported() {
     Progress progress;
-    return runExperiment(m_workspace->experiment(), modelFamilies(), progress);
+    return runExperiment(m_workspace->document().experiment(), modelFamilies(), progress);
   }
 };
 
@@ -52,12 +52,12 @@ int columnNamed(const report::Table& table, const std::string& name) {
 }
 
 TEST_F(HeldOut, TheTableHasTheNumbersOfTheReport) {
-  m_workspace->edit("Two", [](Experiment& e) { e.heldOutSamples = 2; });
+  m_workspace->document().edit("Two", [](Experiment& e) { e.heldOutSamples = 2; });
   m_window->showPanel("statistics");
   choose("statisticsCompare", 1);
   ASSERT_TRUE(idle());
-  ASSERT_EQ(m_workspace->groups().size(), 2U);
-  EXPECT_EQ(m_workspace->groups().back().motions.size(), 12U);
+  ASSERT_EQ(m_workspace->motions().groups().size(), 2U);
+  EXPECT_EQ(m_workspace->motions().groups().back().motions.size(), 12U);
   auto* compute = child<QPushButton>(*m_window, "statisticsCompute");
   ASSERT_TRUE(waitUntil([&] { return compute->isEnabled(); }, 5.0));
   compute->click();
@@ -68,7 +68,9 @@ TEST_F(HeldOut, TheTableHasTheNumbersOfTheReport) {
   const ExperimentResult result = asReported();
   const auto& heldOut = result.systems.front().heldOut;
   for (size_t i = 0; i < heldOut.size(); ++i)
-    EXPECT_EQ(m_workspace->groups().back().motions[i].clip->positions, heldOut[i].positions) << i;
+    EXPECT_EQ(m_workspace->motions().groups().back().motions[i].clip->positions,
+              heldOut[i].positions)
+        << i;
   Progress progress;
   const report::Table table = report::statisticTables(result, progress).front();
   EXPECT_EQ(shown->rowCount(), static_cast<int>(table.rows.size()));
@@ -96,7 +98,7 @@ TEST_F(HeldOut, TheTableHasTheNumbersOfTheReport) {
 }
 
 TEST_F(HeldOut, FootstepsAreThoseOfTheReportAndThePathIsAnotherChoice) {
-  m_workspace->sampleCurrentPath();
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(idle());
   m_window->showPanel("footsteps");
   auto* shown = child<QTableWidget>(*m_window, "footstepsTable");
@@ -108,7 +110,7 @@ TEST_F(HeldOut, FootstepsAreThoseOfTheReportAndThePathIsAnotherChoice) {
         return numberAt(*shown, row, column);
     return std::nan("");
   };
-  const std::string system = m_workspace->experiment().systems.front().name;
+  const std::string system = m_workspace->document().experiment().systems.front().name;
   ASSERT_TRUE(waitUntil([&] { return shown->rowCount() == 6 && m_jobs->idle(); }, 30.0));
   // Speeds may agree; as many steps along six clips as along one path would be chance.
   const double onPath = cell(system.c_str(), kSteps);
@@ -125,8 +127,9 @@ TEST_F(HeldOut, FootstepsAreThoseOfTheReportAndThePathIsAnotherChoice) {
 
 TEST_F(HeldOut, OneChoiceHoldsInEveryPanelAndSaysWhatIsMissing) {
   m_window->showPanel("distributions");
-  m_workspace->setSampled(m_workspace->experiment().systems.front().name, true);
-  m_workspace->setComparison(Comparison::HeldOut);
+  m_workspace->sampling().setSampled(m_workspace->document().experiment().systems.front().name,
+                                     true);
+  m_workspace->view().setComparison(Comparison::HeldOut);
   settle();
   EXPECT_EQ(child<QComboBox>(*m_window, "distributionsCompare")->currentIndex(), 1);
   EXPECT_TRUE(child<QLabel>(*m_window, "distributionsHint")->text().contains("held-out"));
@@ -135,56 +138,57 @@ TEST_F(HeldOut, OneChoiceHoldsInEveryPanelAndSaysWhatIsMissing) {
   sample->click();
   ASSERT_TRUE(idle());
   EXPECT_FALSE(sample->isEnabled()) << "there is nothing to be sampled again";
-  m_workspace->edit("Warmer", [](Experiment& e) { e.systems.front().temperature = 0.5; });
+  m_workspace->document().edit("Warmer",
+                               [](Experiment& e) { e.systems.front().temperature = 0.5; });
   EXPECT_TRUE(sample->isEnabled());
   const auto* counted = child<QLabel>(*m_window, "distributionsCounted");
   EXPECT_TRUE(waitUntil([&] { return counted->text().contains("out of date"); }, 30.0));
 }
 
 TEST_F(HeldOut, GoesWithTheNaturalMotionThatItFollows) {
-  m_workspace->sampleHeldOut();
+  m_workspace->sampling().sampleHeldOut();
   ASSERT_TRUE(idle());
-  ASSERT_EQ(m_workspace->groups().size(), 2U);
-  m_workspace->edit("Others", [](Experiment& e) { e.natural = {"walker:2,4,7"}; });
+  ASSERT_EQ(m_workspace->motions().groups().size(), 2U);
+  m_workspace->document().edit("Others", [](Experiment& e) { e.natural = {"walker:2,4,7"}; });
   ASSERT_TRUE(idle());
-  ASSERT_EQ(m_workspace->groups().size(), 1U);
-  EXPECT_EQ(m_workspace->withoutHeldOut().size(), 1U);
+  ASSERT_EQ(m_workspace->motions().groups().size(), 1U);
+  EXPECT_EQ(m_workspace->sampling().withoutHeldOut().size(), 1U);
 }
 
 TEST_F(HeldOut, ComesBackWithTheDocumentOnceNaturalMotionIsRead) {
-  m_workspace->setComparison(Comparison::HeldOut);
-  m_workspace->sampleHeldOut();
+  m_workspace->view().setComparison(Comparison::HeldOut);
+  m_workspace->sampling().sampleHeldOut();
   ASSERT_TRUE(idle());
-  const MotionGroup drawn = m_workspace->groups().back();
+  const MotionGroup drawn = m_workspace->motions().groups().back();
   const auto saved = std::filesystem::path(m_folder.path().toStdString()) / "x.json";
   m_workspace->save(QString::fromStdString(saved.string()));
   m_workspace->open(readExperiment(saved), QString::fromStdString(saved.string()));
-  EXPECT_EQ(m_workspace->comparison(), Comparison::HeldOut);
-  m_workspace->sampleOffered();  // too early: there is nothing to follow yet
-  EXPECT_EQ(m_workspace->offered().size(), 1U);
+  EXPECT_EQ(m_workspace->view().comparison(), Comparison::HeldOut);
+  m_workspace->kept().sampleOffered();  // too early: there is nothing to follow yet
+  EXPECT_EQ(m_workspace->kept().offered().size(), 1U);
   ASSERT_TRUE(idle());
-  m_workspace->sampleOffered();
+  m_workspace->kept().sampleOffered();
   ASSERT_TRUE(idle());
-  EXPECT_TRUE(m_workspace->offered().empty());
-  const MotionGroup& back = m_workspace->groups().back();
+  EXPECT_TRUE(m_workspace->kept().offered().empty());
+  const MotionGroup& back = m_workspace->motions().groups().back();
   ASSERT_EQ(back.motions.size(), drawn.motions.size());
   for (size_t i = 0; i < back.motions.size(); ++i)
     EXPECT_EQ(back.motions[i].clip->positions, drawn.motions[i].clip->positions);
-  EXPECT_TRUE(m_workspace->withoutHeldOut().empty());
+  EXPECT_TRUE(m_workspace->sampling().withoutHeldOut().empty());
 }
 
 TEST_F(HeldOut, WhatWouldComeOutTheSameIsNotSampledAgain) {
-  m_workspace->sampleCurrentPath();
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(idle());
-  const int first = m_workspace->groups().back().id;
-  m_workspace->sampleCurrentPath();
+  const int first = m_workspace->motions().groups().back().id;
+  m_workspace->sampling().sampleCurrentPath();
   EXPECT_TRUE(m_jobs->idle());
-  EXPECT_EQ(m_workspace->groups().back().id, first);
+  EXPECT_EQ(m_workspace->motions().groups().back().id, first);
   EXPECT_TRUE(m_window->statusBar()->currentMessage().contains("Unchanged"));
-  m_workspace->edit("Seed", [](Experiment& e) { e.seed += 1; });
-  m_workspace->sampleCurrentPath();
+  m_workspace->document().edit("Seed", [](Experiment& e) { e.seed += 1; });
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(idle());
-  EXPECT_NE(m_workspace->groups().back().id, first);
+  EXPECT_NE(m_workspace->motions().groups().back().id, first);
 }
 
 }  // namespace

@@ -121,7 +121,8 @@ TEST_F(Import, WhatAFolderLeavesOutIsListedWithItsReason) {
   EXPECT_EQ(add()->text(), "Add 2 files");
   add()->click();
   ASSERT_TRUE(waitUntil([this] { return !dialogShown() && m_jobs->idle(); }));
-  EXPECT_EQ(m_workspace->experiment().natural, std::vector<std::string>{m_motion.string()})
+  EXPECT_EQ(m_workspace->document().experiment().natural,
+            std::vector<std::string>{m_motion.string()})
       << "the folder leaves them out by itself";
 }
 
@@ -203,9 +204,9 @@ TEST_F(Import, AnotherEulerOrderIsConvertedAndAdded) {
       ->setText(QString::fromStdString(m_motion / "converted"));
   QTest::mouseClick(add(), Qt::LeftButton);
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
-  const auto& natural = m_workspace->experiment().natural;
+  const auto& natural = m_workspace->document().experiment().natural;
   ASSERT_EQ(natural.size(), 1U);
-  const Clip added = io::readClip(m_workspace->experiment().folder / natural.front());
+  const Clip added = io::readClip(m_workspace->document().experiment().folder / natural.front());
   const Clip wanted =
       io::readClip(m_motion / "walk_0000.bvh", io::ReadOptions{.eulerOrder = "XYZ"});
   const Clip asFound = io::readClip(m_motion / "walk_0000.bvh");
@@ -231,7 +232,7 @@ TEST_F(Import, ClosingTheDialogEndsItsWorkAndAddsNothing) {
   EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 1.0);
   settle();
   EXPECT_FALSE(dialogShown());
-  EXPECT_TRUE(m_workspace->experiment().natural.empty());
+  EXPECT_TRUE(m_workspace->document().experiment().natural.empty());
   EXPECT_TRUE(m_errors.empty());
 }
 

@@ -31,28 +31,30 @@ TEST_F(Journey, SamplesEditsCancelsUndoesSavesAndReopens) {
   m_window->showPanel("sampling");
   click("sampleButton");
   ASSERT_TRUE(idle());
-  ASSERT_EQ(m_workspace->groups().size(), 2U);
-  EXPECT_EQ(m_workspace->groups()[1].motions.size(), 2U);
+  ASSERT_EQ(m_workspace->motions().groups().size(), 2U);
+  EXPECT_EQ(m_workspace->motions().groups()[1].motions.size(), 2U);
 
   child<QSpinBox>(*m_window, "sampleCount")->setValue(5000);
   click("sampleButton");
-  ASSERT_TRUE(waitUntil([this] { return m_workspace->groups().back().motions.size() >= 10; }))
-      << "the first motions did not appear while the rest was computed";
+  ASSERT_TRUE(waitUntil([this] {
+    return m_workspace->motions().groups().back().motions.size() >= 10;
+  })) << "the first motions did not appear while the rest was computed";
   EXPECT_FALSE(m_jobs->idle());
   click("sampleCancel");
   ASSERT_TRUE(idle());
-  EXPECT_FALSE(m_workspace->groups().back().complete);
-  EXPECT_GE(m_workspace->groups().back().motions.size(), 10U) << "what was drawn was thrown away";
+  EXPECT_FALSE(m_workspace->motions().groups().back().complete);
+  EXPECT_GE(m_workspace->motions().groups().back().motions.size(), 10U)
+      << "what was drawn was thrown away";
 
   m_window->command("undo")->trigger();
-  EXPECT_EQ(m_workspace->experiment().samples, 2);
+  EXPECT_EQ(m_workspace->document().experiment().samples, 2);
   const QString file = m_folder.path() + "/journey.json";
   m_workspace->save(file);
-  const Experiment saved = m_workspace->experiment();
-  m_workspace->edit("Seed", [](Experiment& e) { e.seed = 99; });
+  const Experiment saved = m_workspace->document().experiment();
+  m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 99; });
   m_workspace->open(readExperiment(file.toStdString()), file);
   ASSERT_TRUE(idle());
-  EXPECT_EQ(m_workspace->experiment(), saved);
+  EXPECT_EQ(m_workspace->document().experiment(), saved);
 }
 
 TEST_F(Journey, SelectingInTheTreeLightsUpTheMotionAndTheOtherWayRound) {
@@ -61,9 +63,9 @@ TEST_F(Journey, SelectingInTheTreeLightsUpTheMotionAndTheOtherWayRound) {
   tree->expand(group);
   const auto second = tree->model()->index(1, 0, group);
   QTest::mouseClick(tree->viewport(), Qt::LeftButton, {}, tree->visualRect(second).center());
-  const int id = m_workspace->groups().front().id;
-  EXPECT_EQ(m_workspace->selection().motions, (std::set<MotionId>{{id, 1}}));
-  m_workspace->select({.motions = {{id, 2}}});
+  const int id = m_workspace->motions().groups().front().id;
+  EXPECT_EQ(m_workspace->view().selection().motions, (std::set<MotionId>{{id, 1}}));
+  m_workspace->view().select({.motions = {{id, 2}}});
   EXPECT_TRUE(tree->selectionModel()->isRowSelected(2, group));
   EXPECT_FALSE(tree->selectionModel()->isRowSelected(1, group));
 }
@@ -105,41 +107,42 @@ std::vector<ClipPtr> commandLineClips(const std::string& model, const SampleReci
 }
 
 TEST_F(Journey, TheSameRecipeGivesTheSameBitsHereAgainOnTheCommandLineAndInAReport) {
-  m_workspace->edit("More", [](Experiment& e) { e.samples = 60; });
-  m_workspace->sampleCurrentPath();
+  m_workspace->document().edit("More", [](Experiment& e) { e.samples = 60; });
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(idle());
-  const SampleRecipe recipe = *m_workspace->groups().back().recipe;
-  const auto first = clipsOf(m_workspace->groups().back());
+  const SampleRecipe recipe = *m_workspace->motions().groups().back().recipe;
+  const auto first = clipsOf(m_workspace->motions().groups().back());
   ASSERT_EQ(first.size(), 60U);
   // Another seed and back: what is unchanged need not be drawn again.
   for (const uint64_t seed : {recipe.seed + 1, recipe.seed}) {
-    m_workspace->edit("Seed", [seed](Experiment& e) { e.seed = seed; });
-    m_workspace->sampleCurrentPath();
+    m_workspace->document().edit("Seed", [seed](Experiment& e) { e.seed = seed; });
+    m_workspace->sampling().sampleCurrentPath();
     ASSERT_TRUE(idle());
   }
-  const auto second = clipsOf(m_workspace->groups().back());
+  const auto second = clipsOf(m_workspace->motions().groups().back());
   EXPECT_NE(second.front(), first.front()) << "nothing was sampled again";
   expectSameBits(second, first, "sampled again");
-  expectSameBits(commandLineClips(m_workspace->modelFile(recipe.system), recipe,
+  expectSameBits(commandLineClips(m_workspace->document().modelFile(recipe.system), recipe,
                                   fs::path(m_folder.path().toStdString()) / "cli"),
                  first, "marey sample");
   Progress progress;
-  const auto report = runExperiment(m_workspace->experiment(), modelFamilies(), progress);
+  const auto report =
+      runExperiment(m_workspace->document().experiment(), modelFamilies(), progress);
   expectSameBits(report.systems.front().paths.at(recipe.path.name).clips, first, "marey report");
 }
 
 TEST_F(Journey, TheSameSeedGivesTheSameMotionsWhateverTheChunks) {
-  m_workspace->edit("More", [](Experiment& e) { e.samples = 13; });
-  m_workspace->sampleCurrentPath();
+  m_workspace->document().edit("More", [](Experiment& e) { e.samples = 13; });
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(idle());
-  const MotionGroup many = m_workspace->groups().back();
+  const MotionGroup many = m_workspace->motions().groups().back();
   ASSERT_EQ(many.motions.size(), 13U);
-  m_workspace->setPinned(many.id, true);
-  m_workspace->edit("Fewer", [](Experiment& e) { e.samples = 3; });
-  m_workspace->sampleCurrentPath();
+  m_workspace->motions().setPinned(many.id, true);
+  m_workspace->document().edit("Fewer", [](Experiment& e) { e.samples = 3; });
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(idle());
-  ASSERT_EQ(m_workspace->groups().size(), 3U) << "a pinned set was replaced";
-  const MotionGroup& few = m_workspace->groups().back();
+  ASSERT_EQ(m_workspace->motions().groups().size(), 3U) << "a pinned set was replaced";
+  const MotionGroup& few = m_workspace->motions().groups().back();
   for (size_t i = 0; i < 3; ++i)
     for (size_t k = 0; k < few.motions[i].clip->positions.size(); ++k)
       ASSERT_EQ(few.motions[i].clip->positions[k], many.motions[i].clip->positions[k]);

@@ -48,8 +48,8 @@ TEST_F(LiveControl, SaysTheRateOfAModelOfThePapersSize) {
   QTest::mouseClick(child<QPushButton>(*m_window, "liveStart"), Qt::LeftButton);
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
   // Not one frame is left out, whatever the rate: 20 of each second where it is held.
-  ASSERT_EQ(m_workspace->groups().size(), 1U);
-  EXPECT_GT(m_workspace->groups().front().motions.front().clip->frameCount(), 10);
+  ASSERT_EQ(m_workspace->motions().groups().size(), 1U);
+  EXPECT_GT(m_workspace->motions().groups().front().motions.front().clip->frameCount(), 10);
   EXPECT_TRUE(m_errors.empty()) << m_errors.front();
 }
 

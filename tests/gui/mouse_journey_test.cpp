@@ -78,19 +78,21 @@ TEST_F(MouseJourney, DrawsAPathSamplesPicksBrushesUndoesSavesAndReopens) {
   click("path", "pathMakeEditable");
   ASSERT_TRUE(idle());
   const auto path = [this] {
-    return m_workspace->experiment().paths[static_cast<size_t>(m_workspace->currentPath())];
+    return m_workspace->document()
+        .experiment()
+        .paths[static_cast<size_t>(m_workspace->document().currentPath())];
   };
   ASSERT_GE(path().wayPoints.size(), 2U);
   auto* top = inPanel<PathView>("path", "pathView");
   settle();
   const WayPoint before = path().wayPoints.back();
   const QPoint from = top->toScreen(before.x, before.z).toPoint();
-  const size_t edits = m_workspace->history().size();
+  const size_t edits = m_workspace->document().history().size();
   drag(top, from, from + QPoint(-30, 25));
   const WayPoint after = path().wayPoints.back();
   EXPECT_GT(after.x, before.x) << "the left of the picture is the walker's left, +X";
   EXPECT_LT(after.z, before.z);
-  EXPECT_EQ(m_workspace->history().size(), edits + 1) << "a drag is one edit";
+  EXPECT_EQ(m_workspace->document().history().size(), edits + 1) << "a drag is one edit";
 
   // The knob of the way-point that was dragged turns the body there, in both views.
   const auto knob = top->knob();
@@ -114,22 +116,23 @@ TEST_F(MouseJourney, DrawsAPathSamplesPicksBrushesUndoesSavesAndReopens) {
   EXPECT_NEAR(*path().wayPoints.back().facing, 0.0, 0.05) << "along +Z";
   EXPECT_EQ(path().wayPoints.back().x, after.x);
   click("scene", "sceneEditPath");
-  for (int turn = 0; turn < 2; ++turn) m_workspace->undo();
+  for (int turn = 0; turn < 2; ++turn) m_workspace->document().undo();
   EXPECT_EQ(path().wayPoints.back(), after);
 
   // Sampled along it, and a body picked in the scene.
   click("sampling", "sampleButton");
   ASSERT_TRUE(idle());
-  ASSERT_EQ(m_workspace->groups().size(), 2U);
+  ASSERT_EQ(m_workspace->motions().groups().size(), 2U);
   auto* scene = inPanel<SceneView>("scene", "sceneView");
   settle(400);
   const auto body = bodyIn(*scene);
   ASSERT_TRUE(body);
   QTest::mouseClick(scene, Qt::LeftButton, {}, *body);
-  ASSERT_EQ(m_workspace->selection().motions.size(), 1U);
-  EXPECT_TRUE(m_workspace->selection().joint);
+  ASSERT_EQ(m_workspace->view().selection().motions.size(), 1U);
+  EXPECT_TRUE(m_workspace->view().selection().joint);
   QTest::mouseClick(scene, Qt::LeftButton, {}, {3, scene->height() - 3});
-  EXPECT_TRUE(m_workspace->selection().motions.empty()) << "a click beside bodies selects none";
+  EXPECT_TRUE(m_workspace->view().selection().motions.empty())
+      << "a click beside bodies selects none";
 
   // A range brushed over the likelihoods is the range of every panel.
   auto* chart = inPanel<ChartView>("likelihood", "likelihoodChart");
@@ -139,20 +142,22 @@ TEST_F(MouseJourney, DrawsAPathSamplesPicksBrushesUndoesSavesAndReopens) {
   const double width = frame.right - frame.left;
   drag(chart, {static_cast<int>(frame.left + 0.25 * width), middle},
        {static_cast<int>(frame.left + 0.75 * width), middle});
-  ASSERT_TRUE(m_workspace->range());
-  EXPECT_NEAR(m_workspace->range()->beginS, frame.dataX(frame.left + 0.25 * width), 0.06);
-  EXPECT_NEAR(m_workspace->range()->endS, frame.dataX(frame.left + 0.75 * width), 0.06);
+  ASSERT_TRUE(m_workspace->view().range());
+  EXPECT_NEAR(m_workspace->view().range()->beginS, frame.dataX(frame.left + 0.25 * width), 0.06);
+  EXPECT_NEAR(m_workspace->view().range()->endS, frame.dataX(frame.left + 0.75 * width), 0.06);
 
   // Keys: play, then one frame on.
   scene->setFocus();
   QTest::keyClick(scene, Qt::Key_Space);
-  ASSERT_TRUE(waitUntil([this] { return m_workspace->time() > m_workspace->range()->beginS; }, 5));
+  ASSERT_TRUE(waitUntil(
+      [this] { return m_workspace->view().time() > m_workspace->view().range()->beginS; }, 5));
   QTest::keyClick(scene, Qt::Key_Space);
-  const double stopped = m_workspace->time();
+  const double stopped = m_workspace->view().time();
   QTest::keyClick(scene, Qt::Key_Period);
-  EXPECT_NEAR(m_workspace->time() - stopped, 1.0 / m_workspace->experiment().fps, 0.051);
-  m_workspace->setRange(std::nullopt);
-  m_workspace->setTime(1.0);
+  EXPECT_NEAR(m_workspace->view().time() - stopped, 1.0 / m_workspace->document().experiment().fps,
+              0.051);
+  m_workspace->view().setRange(std::nullopt);
+  m_workspace->view().setTime(1.0);
   settle(400);
   expectLikeBaseline(pictureOf(*m_window), "journey-sampled", 0.9);
 
@@ -166,13 +171,13 @@ TEST_F(MouseJourney, DrawsAPathSamplesPicksBrushesUndoesSavesAndReopens) {
   m_window->command("saveAs")->trigger();
   ASSERT_TRUE(QFile::exists(file));
   EXPECT_FALSE(m_workspace->modified());
-  const Experiment saved = m_workspace->experiment();
+  const Experiment saved = m_workspace->document().experiment();
   m_workspace->open(Experiment{}, {});
   typeIntoFileDialog(file);
   m_window->command("open")->trigger();
   ASSERT_TRUE(idle());
-  EXPECT_EQ(m_workspace->experiment(), saved);
-  EXPECT_EQ(m_workspace->file(), file);
+  EXPECT_EQ(m_workspace->document().experiment(), saved);
+  EXPECT_EQ(m_workspace->document().file(), file);
   EXPECT_TRUE(m_errors.empty()) << m_errors.front();
 }
 

@@ -63,7 +63,7 @@ class RealDataWindow : public WindowTest {
     ASSERT_TRUE(idle());
     auto* top = child<PathView>(*panel, "pathView");
     settle();
-    const WayPoint last = m_workspace->experiment().paths.front().wayPoints.back();
+    const WayPoint last = m_workspace->document().experiment().paths.front().wayPoints.back();
     const QPoint from = top->toScreen(last.x, last.z).toPoint(), to = from + QPoint(-35, 20);
     QTest::mousePress(top, Qt::LeftButton, {}, from);
     for (const QPoint& at : {from + (to - from) / 2, to}) {
@@ -72,7 +72,7 @@ class RealDataWindow : public WindowTest {
       QApplication::sendEvent(top, &move);
     }
     QTest::mouseRelease(top, Qt::LeftButton, {}, to);
-    EXPECT_NE(m_workspace->experiment().paths.front().wayPoints.back(), last);
+    EXPECT_NE(m_workspace->document().experiment().paths.front().wayPoints.back(), last);
   }
 
   /// Wall time from each of some new times until the screen has the scene of that time: what the
@@ -92,7 +92,7 @@ class RealDataWindow : public WindowTest {
       settle(20);
       drawn = shown = false;
       const double begin = nowMs();
-      m_workspace->setTime(0.125 * i);
+      m_workspace->view().setTime(0.125 * i);
       EXPECT_TRUE(waitUntil([&] { return shown; }, 10.0));
       ms.push_back(nowMs() - begin);
     }
@@ -112,15 +112,15 @@ class RealDataWindow : public WindowTest {
 
 TEST_F(RealDataWindow, HoldsHeldOutClipsAndAHundredSamplesAlongADrawnPath) {
   ASSERT_TRUE(m_errors.empty()) << m_errors.front();
-  ASSERT_EQ(m_workspace->groups().size(), 1U);
-  EXPECT_EQ(m_workspace->groups().front().motions.size(), 101U);
+  ASSERT_EQ(m_workspace->motions().groups().size(), 1U);
+  EXPECT_EQ(m_workspace->motions().groups().front().motions.size(), 101U);
   drawPath();
   const double begin = nowMs();
-  m_workspace->sampleCurrentPath();
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(idle());
   std::printf("sampling and scoring %d motions of 6 s: %.0f ms\n", kSamples, nowMs() - begin);
-  ASSERT_EQ(m_workspace->groups().size(), 2U);
-  const MotionGroup& samples = m_workspace->groups().back();
+  ASSERT_EQ(m_workspace->motions().groups().size(), 2U);
+  const MotionGroup& samples = m_workspace->motions().groups().back();
   ASSERT_EQ(samples.motions.size(), static_cast<size_t>(kSamples));
   for (const Motion& motion : samples.motions)
     for (const Vec3& place : motion.clip->positions) ASSERT_TRUE(place.allFinite());
@@ -147,7 +147,7 @@ TEST_F(RealDataWindow, HoldsHeldOutClipsAndAHundredSamplesAlongADrawnPath) {
   std::sort(ms.begin(), ms.end());
   std::printf("scrubbing through 201 motions: median %.0f ms, worst %.0f ms\n", ms[ms.size() / 2],
               ms.back());
-  m_workspace->select({.motions = {{samples.id, 3}}});
+  m_workspace->view().select({.motions = {{samples.id, 3}}});
   keepPicture("selection");
   EXPECT_TRUE(m_errors.empty()) << m_errors.front();
 }

@@ -18,16 +18,16 @@ class Screenshots : public WindowTest {
     WindowTest::SetUp();
     openWindow();
     openSmallDemo();
-    m_workspace->edit("Samples", [](Experiment& e) {
+    m_workspace->document().edit("Samples", [](Experiment& e) {
       e.samples = 6;
       for (ExperimentPath& path : e.paths) path.seconds = 4.0;
     });
-    m_workspace->setCurrentPath(2);
-    m_workspace->sampleCurrentPath();
+    m_workspace->document().setCurrentPath(2);
+    m_workspace->sampling().sampleCurrentPath();
     ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
-    m_workspace->scoreNatural(m_workspace->experiment().systems.front().name);
+    m_workspace->natural().score(m_workspace->document().experiment().systems.front().name);
     ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
-    m_workspace->setTime(2.0);
+    m_workspace->view().setTime(2.0);
   }
 
   /// With these panels in front.
@@ -55,8 +55,8 @@ TEST_F(Screenshots, PathAndDistributions) {
 }
 
 TEST_F(Screenshots, SelectionInStatisticsAndDiversity) {
-  const MotionGroup& samples = m_workspace->groups().back();
-  m_workspace->select({.motions = {{samples.id, 1}}});
+  const MotionGroup& samples = m_workspace->motions().groups().back();
+  m_workspace->view().select({.motions = {{samples.id, 1}}});
   take(Theme::Light, {"history", "diversity"}, "window-selection");
 }
 

@@ -23,35 +23,35 @@ namespace fs = std::filesystem;
 class Shell : public DemoTest {};
 
 TEST_F(Shell, UndoAndRedoFollowTheHistoryAndNameTheEdit) {
-  m_workspace->edit("Seed", [](Experiment& e) { e.seed = 7; });
-  m_workspace->edit("Samples", [](Experiment& e) { e.samples = 9; });
+  m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 7; });
+  m_workspace->document().edit("Samples", [](Experiment& e) { e.samples = 9; });
   EXPECT_EQ(m_window->command("undo")->text(), "Undo Samples");
   m_window->command("undo")->trigger();
-  EXPECT_EQ(m_workspace->experiment().samples, 2);
-  EXPECT_EQ(m_workspace->experiment().seed, 7U);
+  EXPECT_EQ(m_workspace->document().experiment().samples, 2);
+  EXPECT_EQ(m_workspace->document().experiment().seed, 7U);
   EXPECT_EQ(m_window->command("redo")->text(), "Redo Samples");
   m_window->command("redo")->trigger();
-  EXPECT_EQ(m_workspace->experiment().samples, 9);
+  EXPECT_EQ(m_workspace->document().experiment().samples, 9);
   auto* list = child<QListWidget>(*m_window->showPanel("history"), "historyList");
   ASSERT_EQ(list->count(), 3);
   list->setCurrentRow(0);
-  EXPECT_EQ(m_workspace->experiment().seed, 1U);
+  EXPECT_EQ(m_workspace->document().experiment().seed, 1U);
   EXPECT_FALSE(m_window->command("undo")->isEnabled());
 }
 
 TEST_F(Shell, ADragIsOneEdit) {
-  const size_t before = m_workspace->history().size();
+  const size_t before = m_workspace->document().history().size();
   for (uint64_t seed = 10; seed < 20; ++seed)
-    m_workspace->edit(
+    m_workspace->document().edit(
         "Seed", [=](Experiment& e) { e.seed = seed; }, true);
-  EXPECT_EQ(m_workspace->history().size(), before + 1);
-  m_workspace->undo();
-  EXPECT_EQ(m_workspace->experiment().seed, 1U);
+  EXPECT_EQ(m_workspace->document().history().size(), before + 1);
+  m_workspace->document().undo();
+  EXPECT_EQ(m_workspace->document().experiment().seed, 1U);
 }
 
 TEST_F(Shell, SavesWhatTheCommandLineReads) {
   const fs::path saved = file("saved.json");
-  m_workspace->edit("Seed", [](Experiment& e) { e.seed = 42; });
+  m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 42; });
   EXPECT_TRUE(m_workspace->modified());
   m_workspace->save(QString::fromStdString(saved));
   EXPECT_FALSE(m_workspace->modified());
@@ -62,10 +62,10 @@ TEST_F(Shell, SavesWhatTheCommandLineReads) {
 }
 
 TEST_F(Shell, AFolderThatCannotBeWrittenLosesNothing) {
-  m_workspace->edit("Seed", [](Experiment& e) { e.seed = 42; });
-  const Experiment before = m_workspace->experiment();
+  m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 42; });
+  const Experiment before = m_workspace->document().experiment();
   EXPECT_THROW(m_workspace->save("/proc/no/such/folder/x.json"), FileError);
-  EXPECT_EQ(m_workspace->experiment(), before);
+  EXPECT_EQ(m_workspace->document().experiment(), before);
   EXPECT_TRUE(m_workspace->modified());
 }
 
@@ -76,28 +76,30 @@ TEST_F(Shell, AFileThatIsNoExperimentLeavesTheDocument) {
   auto* box = m_window->findChild<QMessageBox*>("errorBox");
   ASSERT_NE(box, nullptr);
   EXPECT_TRUE(box->informativeText().contains("broken.json")) << qPrintable(box->informativeText());
-  EXPECT_EQ(m_workspace->experiment().systems.size(), 1U);
-  EXPECT_EQ(m_workspace->groups().size(), 1U);
+  EXPECT_EQ(m_workspace->document().experiment().systems.size(), 1U);
+  EXPECT_EQ(m_workspace->motions().groups().size(), 1U);
 }
 
 TEST_F(Shell, AModelThatVanishedIsNamedAndTheWindowLives) {
-  m_workspace->edit("Model", [](Experiment& e) { e.systems[0].model = "gone.marey"; });
-  m_workspace->sampleCurrentPath();
+  m_workspace->document().edit("Model", [](Experiment& e) { e.systems[0].model = "gone.marey"; });
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(waitUntil([this] { return !m_errors.empty(); }));
   EXPECT_NE(m_errors.front().find("gone.marey"), std::string::npos) << m_errors.front();
-  EXPECT_EQ(m_workspace->groups().size(), 1U) << "an empty sample set was left";
-  m_workspace->undo();
-  m_workspace->sampleCurrentPath();
+  EXPECT_EQ(m_workspace->motions().groups().size(), 1U) << "an empty sample set was left";
+  m_workspace->document().undo();
+  m_workspace->sampling().sampleCurrentPath();
   EXPECT_TRUE(waitUntil([this] {
-    return m_workspace->groups().size() == 2 && m_workspace->groups().back().complete;
+    return m_workspace->motions().groups().size() == 2 &&
+           m_workspace->motions().groups().back().complete;
   }));
 }
 
 TEST_F(Shell, ClosingDuringAJobEndsIt) {
-  m_workspace->edit("More", [](Experiment& e) { e.samples = 100000; });
+  m_workspace->document().edit("More", [](Experiment& e) { e.samples = 100000; });
   m_workspace->save(QString::fromStdString(file("saved.json")));
-  m_workspace->sampleCurrentPath();
-  ASSERT_TRUE(waitUntil([this] { return !m_workspace->groups().back().motions.empty(); }));
+  m_workspace->sampling().sampleCurrentPath();
+  ASSERT_TRUE(
+      waitUntil([this] { return !m_workspace->motions().groups().back().motions.empty(); }));
   EXPECT_TRUE(m_window->close());
   EXPECT_TRUE(waitUntil([this] { return m_jobs->idle(); }, 20.0));
 }
@@ -162,9 +164,10 @@ Stall longestStall(const std::function<bool()>& until) {
 }
 
 TEST_F(Shell, AThousandClipsDoNotHoldTheWindowUp) {
-  m_workspace->edit("A thousand", [](Experiment& e) { e.natural = {"walker:1000,4,1"}; });
+  m_workspace->document().edit("A thousand",
+                               [](Experiment& e) { e.natural = {"walker:1000,4,1"}; });
   const Stall stall = longestStall([this] { return m_jobs->idle(); });
-  EXPECT_EQ(m_workspace->groups().front().motions.size(), 1000U);
+  EXPECT_EQ(m_workspace->motions().groups().front().motions.size(), 1000U);
   EXPECT_LT(stall.cpuMs, 100.0);
   // A thread that gets a tenth of a processor still comes back within a second.
   EXPECT_LT(stall.wallMs, 1000.0);

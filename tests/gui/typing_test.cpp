@@ -21,7 +21,7 @@ class Typing : public DemoTest {
   QDoubleSpinBox* temperature() {
     return child<QDoubleSpinBox>(*m_window->showPanel("sampling"), "temperature0");
   }
-  double stored() const { return m_workspace->experiment().systems.front().temperature; }
+  double stored() const { return m_workspace->document().experiment().systems.front().temperature; }
   /// One key after the other, with the event loop running between them as it does for a person.
   void type(QWidget* field, const char* keys) {
     field->setFocus();
@@ -78,7 +78,7 @@ TEST_F(Typing, ATemperatureIsWhatWasTypedAtTheEnd) {
     EXPECT_EQ(box->text(), "0.65") << "the text was rewritten";
     QTest::keyClick(box, Qt::Key_Return);
     EXPECT_EQ(stored(), 0.65);
-    m_workspace->undo();
+    m_workspace->document().undo();
     EXPECT_NE(stored(), 0.65) << "typing left several edits";
   }
 }
@@ -97,21 +97,21 @@ TEST_F(Typing, ACommandTakesWhatIsBeingTyped) {
   auto* seed = child<QLineEdit>(*m_window, "sampleSeed");
   type(seed, "77");
   m_window->command("selectNone")->trigger();
-  EXPECT_EQ(m_workspace->experiment().seed, 77U);
+  EXPECT_EQ(m_workspace->document().experiment().seed, 77U);
 }
 
 TEST_F(Typing, WhatIsBeingTypedIsNotRewrittenByOtherChanges) {
   QDoubleSpinBox* box = temperature();
   type(box, "0.4");
-  m_workspace->edit("Samples", [](Experiment& e) { e.samples = 7; });
+  m_workspace->document().edit("Samples", [](Experiment& e) { e.samples = 7; });
   EXPECT_EQ(box->text(), "0.4");
   auto* seed = child<QLineEdit>(*m_window, "sampleSeed");
   type(seed, "12");
-  m_workspace->edit("Samples", [](Experiment& e) { e.samples = 8; });
+  m_workspace->document().edit("Samples", [](Experiment& e) { e.samples = 8; });
   EXPECT_EQ(seed->text(), "12");
   auto* frame = child<QSpinBox>(*m_window->showPanel("timeline"), "timelineFrame");
   type(frame, "3");
-  m_workspace->setTime(0.5);
+  m_workspace->view().setTime(0.5);
   EXPECT_EQ(frame->text(), "3") << "playing took the number out of the hand";
 }
 
@@ -150,11 +150,11 @@ TEST_F(Typing, EveryBoxOfTheWindowTakesFinishedAndRoundNumbers) {
 }
 
 TEST_F(Typing, SpacePlaysWhateverWasPressedLast) {
-  m_workspace->edit("More", [](Experiment& e) { e.samples = 100000; });
-  const size_t models = m_workspace->experiment().systems.size();
+  m_workspace->document().edit("More", [](Experiment& e) { e.samples = 100000; });
+  const size_t models = m_workspace->document().experiment().systems.size();
   QWidget* panel = m_window->showPanel("sampling");
   QTest::mouseClick(child<QPushButton>(*panel, "sampleButton"), Qt::LeftButton);
-  ASSERT_TRUE(waitUntil([this] { return m_workspace->sampling(); }));
+  ASSERT_TRUE(waitUntil([this] { return m_workspace->sampling().active(); }));
   QTest::mouseClick(child<QPushButton>(*panel, "sampleCancel"), Qt::LeftButton);
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
   settle();
@@ -162,7 +162,7 @@ TEST_F(Typing, SpacePlaysWhateverWasPressedLast) {
       << QApplication::focusWidget()->objectName().toStdString() << " got the focus by itself";
   ASSERT_FALSE(playing());
   pressSpace();
-  EXPECT_EQ(m_workspace->experiment().systems.size(), models) << "Space removed a model";
+  EXPECT_EQ(m_workspace->document().experiment().systems.size(), models) << "Space removed a model";
   EXPECT_TRUE(playing());
   pressSpace();
   EXPECT_FALSE(playing());
@@ -171,14 +171,14 @@ TEST_F(Typing, SpacePlaysWhateverWasPressedLast) {
 TEST_F(Typing, SpaceIsNoButtonsButReturnIs) {
   QWidget* panel = m_window->showPanel("sampling");
   auto* another = child<QToolButton>(*panel, "anotherSeed");
-  const uint64_t before = m_workspace->experiment().seed;
+  const uint64_t before = m_workspace->document().experiment().seed;
   another->setFocus(Qt::TabFocusReason);
   pressSpace();
-  EXPECT_EQ(m_workspace->experiment().seed, before);
+  EXPECT_EQ(m_workspace->document().experiment().seed, before);
   EXPECT_TRUE(playing());
   pressSpace();
   QTest::keyClick(another, Qt::Key_Return);
-  EXPECT_NE(m_workspace->experiment().seed, before) << "no key presses a button";
+  EXPECT_NE(m_workspace->document().experiment().seed, before) << "no key presses a button";
 }
 
 TEST_F(Typing, SpaceIsTextInAFieldOfText) {

@@ -11,7 +11,6 @@
 #include "gui/plots/chart_view.h"
 #include "gui/scene/scene_view.h"
 #include "gui/time/gait_rows.h"
-#include "gui/workspace/contact_tolerance.h"
 #include <fcntl.h>
 #include <linux/joystick.h>
 #include <sys/stat.h>
@@ -27,7 +26,7 @@ class Views : public DemoTest {
  protected:
   /// The workspace's first natural clip as if it had no hips.
   ClipPtr withoutHips() const {
-    Clip clip = *m_workspace->groups().front().motions.front().clip;
+    Clip clip = *m_workspace->motions().groups().front().motions.front().clip;
     Skeleton body = *clip.skeleton;
     for (size_t j = 0; j < body.names.size(); ++j) body.names[j] = "part" + std::to_string(j);
     clip.skeleton = std::make_shared<const Skeleton>(body);
@@ -36,7 +35,7 @@ class Views : public DemoTest {
   int addMotions(std::vector<Motion> motions) {
     MotionGroup group{.name = "Added", .system = "Added", .colourIndex = 0};
     group.motions = std::move(motions);
-    return m_workspace->addGroup(std::move(group));
+    return m_workspace->motions().add(std::move(group));
   }
 };
 
@@ -62,9 +61,9 @@ TEST_F(Views, TheFitKeyFillsTheViewWithWhatIsShown) {
   settings.shadow = settings.path = false;
   settings.placement = render::Placement::RootAligned;
   view.setSettings(settings);
-  const int natural = m_workspace->groups().front().id;
+  const int natural = m_workspace->motions().groups().front().id;
   for (const bool far : {true, false}) {
-    m_workspace->showOnly({{natural, 0}});
+    m_workspace->motions().showOnly({{natural, 0}});
     settle();
     view.scene().zoom(far ? 0.2 : 5.0);
     view.setFocus();
@@ -95,13 +94,13 @@ TEST_F(Views, ARefusedPlacementLeavesWhatIsPickedAndShowsTheWorld) {
   EXPECT_EQ(view->settings().placement, render::Placement::World);
   EXPECT_EQ(box->currentIndex(), 0) << "the box says what is drawn";
   EXPECT_EQ(view->content().ids.size(), view->scene().motions().size());
-  EXPECT_EQ(view->content().ids, m_workspace->visibleMotions());
+  EXPECT_EQ(view->content().ids, m_workspace->motions().visibleMotions());
 }
 
 TEST_F(Views, MarksOnTheFloorAreTheContactsOfTheTimeline) {
-  const Skeleton& body = *m_workspace->skeleton();
+  const Skeleton& body = *m_workspace->motions().skeleton();
   const std::string foot = body.names[static_cast<size_t>(stats::feetOf(body).back())];
-  m_workspace->edit(QStringLiteral("Feet"), [&](Experiment& e) { e.feet = foot; });
+  m_workspace->document().edit(QStringLiteral("Feet"), [&](Experiment& e) { e.feet = foot; });
   m_window->showPanel("timeline");
   m_window->showPanel("scene");
   auto* view = child<SceneView>(*m_window, "sceneView");
@@ -109,7 +108,7 @@ TEST_F(Views, MarksOnTheFloorAreTheContactsOfTheTimeline) {
   settle();
   const stats::ContactRule rule = view->scene().options().contacts;
   EXPECT_EQ(rule, (stats::ContactRule{.toleranceCmS = 60.0, .feet = foot}));
-  const auto row = GaitRows(*m_workspace).rows(ContactTolerance::of(*m_workspace).rule()).front();
+  const auto row = GaitRows(*m_workspace).rows(m_workspace->contactRule()).front();
   const auto rests = render::feetAtRest(*view->content().motions.front().clip, rule);
   ASSERT_FALSE(rests.empty());
   ASSERT_EQ(row.contacts.size(), rests.size());
@@ -120,7 +119,7 @@ TEST_F(Views, MarksOnTheFloorAreTheContactsOfTheTimeline) {
 }
 
 TEST_F(Views, AJointIsTheSameByNameInBodiesOfAnotherOrder) {
-  Clip clip = *m_workspace->groups().front().motions.front().clip;
+  Clip clip = *m_workspace->motions().groups().front().motions.front().clip;
   Skeleton body = *clip.skeleton;
   const int joint = body.jointCount() - 1;
   const std::string name = body.names.back();
@@ -128,7 +127,7 @@ TEST_F(Views, AJointIsTheSameByNameInBodiesOfAnotherOrder) {
   clip.skeleton = std::make_shared<const Skeleton>(body);
   addMotions({{std::make_shared<const Clip>(clip), {}, true}, {withoutHips(), {}, true}});
   MotionColouring colouring(*m_workspace);
-  m_workspace->select({.joint = joint});
+  m_workspace->view().select({.joint = joint});
   SceneSettings settings;
   settings.trails = Trails::SelectedJoint;
   const auto motions = sceneContent(*m_workspace, settings, colouring).motions;
@@ -142,19 +141,19 @@ TEST_F(Views, AJointIsTheSameByNameInBodiesOfAnotherOrder) {
 }
 
 TEST_F(Views, APickedBodyLightsUpItsCurveInEveryPlot) {
-  m_workspace->sampleCurrentPath();
+  m_workspace->sampling().sampleCurrentPath();
   ASSERT_TRUE(idle());
-  const int group = m_workspace->groups().back().id;
+  const int group = m_workspace->motions().groups().back().id;
   for (const char* panel : {"likelihood", "footsteps", "diversity", "distributions"}) {
     SCOPED_TRACE(panel);
-    m_workspace->select({});
+    m_workspace->view().select({});
     m_window->showPanel(QString::fromLatin1(panel));
     settle(400);
     ASSERT_TRUE(idle());
     settle(100);
     auto* chart = child<ChartView>(*m_window, (std::string(panel) + "Chart").c_str());
     EXPECT_TRUE(chart->highlights().empty());
-    m_workspace->select({.motions = {{group, 1}}});
+    m_workspace->view().select({.motions = {{group, 1}}});
     EXPECT_FALSE(chart->highlights().empty());
   }
 }
@@ -163,14 +162,14 @@ TEST_F(Views, StatisticsAreFinishedWhateverChangesMeanwhile) {
   QWidget* panel = m_window->showPanel("statistics");
   settle();
   QTest::mouseClick(child<QPushButton>(*panel, "statisticsCompute"), Qt::LeftButton);
-  m_workspace->edit(QStringLiteral("Title"), [](Experiment& e) { e.title = "Another"; });
+  m_workspace->document().edit(QStringLiteral("Title"), [](Experiment& e) { e.title = "Another"; });
   ASSERT_TRUE(idle());
   EXPECT_GT(child<QTableWidget>(*panel, "statisticsTable")->rowCount(), 0);
 }
 
 TEST_F(Views, ThousandMotionsDoNotHoldUpTheWindow) {
   constexpr int kMotions = 1000, kFrames = 1200;
-  const Clip& first = *m_workspace->groups().front().motions.front().clip;
+  const Clip& first = *m_workspace->motions().groups().front().motions.front().clip;
   Clip longer = first;
   while (longer.frameCount() < kFrames)
     longer.positions.insert(longer.positions.end(), first.positions.begin(), first.positions.end());
@@ -193,7 +192,7 @@ TEST_F(Views, ThousandMotionsDoNotHoldUpTheWindow) {
   chart->picture();
   const double redraw = cpuMs() - before;
   EXPECT_LT(redraw, 2 * 100.0) << "redrawing a plot of 1,000 motions x 1,200 frames, ms";
-  m_workspace->select({.motions = {{group, 5}, {group, 6}}});
+  m_workspace->view().select({.motions = {{group, 5}, {group, 6}}});
   chart->repaint();
   const double start = cpuMs();
   for (int k = 0; k < 10; ++k) {
@@ -243,21 +242,22 @@ TEST_F(Views, AKeptMotionIsDrawnAgainByItsRecipeAndTheKeysWorkInTheScene) {
   m_window->showPanel("live");
   QTest::mouseClick(child<QPushButton>(*m_window, "liveStart"), Qt::LeftButton);
   auto* view = child<SceneView>(*m_window, "sceneView");
-  ASSERT_TRUE(waitUntil([&] { return m_workspace->groups().back().name.starts_with("Live"); }));
+  ASSERT_TRUE(
+      waitUntil([&] { return m_workspace->motions().groups().back().name.starts_with("Live"); }));
   view->setFocus();
   QTest::keyPress(view, Qt::Key_Up);
   settle(1500);
   QTest::keyRelease(view, Qt::Key_Up);
   QTest::mouseClick(child<QPushButton>(*m_window, "liveKeep"), Qt::LeftButton);
   ASSERT_TRUE(idle());
-  const MotionGroup kept = m_workspace->groups().back();
+  const MotionGroup kept = m_workspace->motions().groups().back();
   ASSERT_TRUE(kept.recipe && kept.recipe->steering) << kept.name;
   const auto& commands = kept.recipe->steering->commands;
   EXPECT_TRUE(std::any_of(commands.begin(), commands.end(),
                           [](const LiveCommand& c) { return c.forwardMS > 0.0; }));
-  m_workspace->sample(*kept.recipe);
+  m_workspace->sampling().sample(*kept.recipe);
   ASSERT_TRUE(idle());
-  const MotionGroup& again = m_workspace->groups().back();
+  const MotionGroup& again = m_workspace->motions().groups().back();
   ASSERT_EQ(again.motions.size(), 1U);
   EXPECT_EQ(again.motions[0].clip->positions, kept.motions[0].clip->positions);
 }
@@ -266,12 +266,13 @@ TEST_F(Views, ASessionDoesNotOutliveItsDocument) {
   m_window->showPanel("live");
   auto* start = child<QPushButton>(*m_window, "liveStart");
   QTest::mouseClick(start, Qt::LeftButton);
-  ASSERT_TRUE(waitUntil([&] { return m_workspace->groups().back().name.starts_with("Live"); }));
-  m_workspace->open(m_workspace->experiment(), {});
+  ASSERT_TRUE(
+      waitUntil([&] { return m_workspace->motions().groups().back().name.starts_with("Live"); }));
+  m_workspace->open(m_workspace->document().experiment(), {});
   EXPECT_EQ(start->text(), "Start");
   EXPECT_FALSE(child<QPushButton>(*m_window, "liveKeep")->isEnabled());
   ASSERT_TRUE(idle());
-  EXPECT_EQ(m_workspace->groups().size(), 1U);
+  EXPECT_EQ(m_workspace->motions().groups().size(), 1U);
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+#include "experiment/kept_sets.h"
+
+#include <gtest/gtest.h>
+
+namespace marey {
+namespace {
+
+KeptSet walkSet() {
+  return {.system = {.name = "A", .model = "models/a.marey", .temperature = 0.9},
+          .path = {.name = "left", .path = "preset:turn-left", .seconds = 3.0},
+          .samples = 4,
+          .seed = 7,
+          .hidden = {}};
+}
+
+TEST(KeptSets, NameTheSameFilesFromAnotherFolder) {
+  const KeptSet moved = inFolder(walkSet(), "/x/first", "/x/second");
+  EXPECT_EQ(moved.system.model, "../first/models/a.marey");
+  EXPECT_EQ(inFolder(walkSet(), "/x/first", "/x/first").system.model, "models/a.marey");
+  const SampleRecipe recipe = inFolder(recipeOf(walkSet(), 20.0, "/x/first"), "/x/second");
+  EXPECT_EQ(recipe.system.model, "../first/models/a.marey");
+  EXPECT_EQ(recipe.folder, "/x/second");
+  EXPECT_EQ(recipe.seed, 7U);
+}
+
+TEST(KeptSets, AreToldApartByHowTheyAreMadeAndWhatIsLeftOut) {
+  const std::string key = keyOf(walkSet());
+  EXPECT_EQ(keyOf(walkSet()), key);
+  KeptSet other = walkSet();
+  other.seed = 8;
+  EXPECT_NE(keyOf(other), key);
+  other = walkSet();
+  other.system.temperature = 1.0;
+  EXPECT_NE(keyOf(other), key);
+  other = walkSet();
+  other.leftOut = {2};
+  EXPECT_NE(keyOf(other), key);
+  other = walkSet();
+  other.hidden = {2};
+  EXPECT_EQ(keyOf(other), key) << "what is hidden changes nothing but pictures";
+}
+
+TEST(KeptSets, ThatNoDocumentCouldOpenAreNotKept) {
+  EXPECT_TRUE(canBeKept(walkSet()));
+  KeptSet nowhere = walkSet();
+  nowhere.path.path.clear();  // neither a preset nor way-points
+  EXPECT_FALSE(canBeKept(nowhere));
+}
+
+}  // namespace
+}  // namespace marey

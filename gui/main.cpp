@@ -84,7 +84,7 @@ int run(int argc, char** argv) {
   });
   window.show();
   QTimer::singleShot(0, &window, [&] {
-    window.start(parser.positionalArguments());
+    window.files().start(parser.positionalArguments());
     logStart(jobs);
   });
   return QApplication::exec();

@@ -7,18 +7,18 @@
 namespace marey::gui {
 
 void addPanelCommands(MainWindow& window, Workspace& workspace) {
-  window.addCommand(QObject::tr("File"), QStringLiteral("exportMotions"),
-                    QObject::tr("Export motions…"), QObject::tr("Ctrl+E"), [&window, &workspace] {
-                      showExportDialog(workspace, window.shownScene(), &window);
-                    });
-  window.addCommand(QObject::tr("Edit"), QStringLiteral("documentSettings"),
-                    QObject::tr("Document settings…"), QObject::tr("Ctrl+,"),
-                    [&window, &workspace] { showDocumentSettings(workspace, &window); });
-  window.addCommand(
+  window.menus().addCommand(
+      QObject::tr("File"), QStringLiteral("exportMotions"), QObject::tr("Export motions…"),
+      QObject::tr("Ctrl+E"),
+      [&window, &workspace] { showExportDialog(workspace, window.shownScene(), &window); });
+  window.menus().addCommand(QObject::tr("Edit"), QStringLiteral("documentSettings"),
+                            QObject::tr("Document settings…"), QObject::tr("Ctrl+,"),
+                            [&window, &workspace] { showDocumentSettings(workspace, &window); });
+  window.menus().addCommand(
       QObject::tr("File"), QStringLiteral("scenePicture"), QObject::tr("Picture of the 3D view…"),
       QKeySequence(Qt::Key_P),
       [&window, &workspace] { saveScenePicture(workspace, *window.shownScene(), &window); });
-  window.setImporter([&window, &workspace](const QStringList& files) {
+  window.files().setImporter([&window, &workspace](const QStringList& files) {
     showImportDialog(workspace, files, &window);
   });
 }

@@ -6,7 +6,6 @@
 #include <QCloseEvent>
 #include <QFileInfo>
 #include <QLineEdit>
-#include <QMessageBox>
 #include <QMimeData>
 #include <QPlainTextEdit>
 #include <QSettings>
@@ -16,100 +15,50 @@
 #include "gui/shell/job_bar.h"
 #include "gui/shell/key_rules.h"
 #include "gui/shell/offer_bar.h"
-#include <qtadvanceddocking/DockAreaWidget.h>
-#include <qtadvanceddocking/DockManager.h>
-#include <qtadvanceddocking/DockWidget.h>
 
 namespace marey::gui {
 namespace {
-
-ads::DockWidgetArea dockArea(PanelArea area) {
-  switch (area) {
-    case PanelArea::Left:
-      return ads::LeftDockWidgetArea;
-    case PanelArea::Right:
-      return ads::RightDockWidgetArea;
-    case PanelArea::Plots:
-    case PanelArea::Bottom:
-      return ads::BottomDockWidgetArea;
-    case PanelArea::Centre:
-      break;
-  }
-  return ads::CenterDockWidgetArea;
-}
 
 constexpr int kMessageMs = 8000;
 
 }  // namespace
 
 MainWindow::MainWindow(Workspace& workspace, const std::vector<PanelSpec>& panels)
-    : m_workspace(workspace), m_autosave(std::make_unique<Autosave>(workspace)) {
+    : m_workspace(workspace), m_files(new DocumentCommands(workspace, *this)), m_menus(*this) {
   setObjectName(QStringLiteral("marey"));
   setAcceptDrops(true);
   new KeyRules(this);
   resize(1500, 920);
-  buildDocks(panels);
+  m_docks = std::make_unique<Docks>(*this, panels, Desk{workspace, m_scene});
   buildMenus();
   statusBar()->addPermanentWidget(new JobBar(workspace.jobs(), this));
-  connect(&m_workspace, &Workspace::errorReported, this, &MainWindow::showError);
-  connect(&m_workspace, &Workspace::noticed, this,
-          [this](const QString& what) { statusBar()->showMessage(what, kMessageMs); });
   addToolBar(Qt::TopToolBarArea, new OfferBar(workspace, this));
-  connect(&m_workspace.document(), &Document::changed, this, &MainWindow::refreshTitle);
-  connect(&m_workspace.motions(), &MotionGroups::changed, this, &MainWindow::refreshBringBack);
+  connectWorkspace();
   refreshTitle();
   refreshBringBack();
+  restore();
+}
+
+void MainWindow::connectWorkspace() {
+  const auto say = [this](const QString& what, int milliseconds) {
+    statusBar()->showMessage(what, milliseconds);
+  };
+  connect(m_files, &DocumentCommands::said, this, say);
+  connect(&m_workspace, &Workspace::noticed, this,
+          [say](const QString& what) { say(what, kMessageMs); });
+  connect(&m_workspace, &Workspace::errorReported, this, &MainWindow::showError);
+  connect(&m_workspace.document(), &Document::changed, this, &MainWindow::refreshTitle);
+  connect(&m_workspace.motions(), &MotionGroups::changed, this, &MainWindow::refreshBringBack);
+}
+
+void MainWindow::restore() {
   const QSettings settings;
   setTheme(settings.value(QStringLiteral("theme")).toString() == QLatin1String("dark")
                ? Theme::Dark
                : Theme::Light);
   restoreGeometry(settings.value(QStringLiteral("geometry")).toByteArray());
   const QByteArray layout = settings.value(QStringLiteral("layout")).toByteArray();
-  if (!layout.isEmpty()) m_docks->restoreState(layout);
-}
-
-MainWindow::~MainWindow() = default;
-
-void MainWindow::buildDocks(const std::vector<PanelSpec>& panels) {
-  ads::CDockManager::setConfigFlags(ads::CDockManager::DefaultOpaqueConfig);
-  ads::CDockManager::setConfigFlag(ads::CDockManager::FocusHighlighting, false);
-  ads::CDockManager::setConfigFlag(ads::CDockManager::DockAreaHasTabsMenuButton, false);
-  ads::CDockManager::setConfigFlag(ads::CDockManager::DockAreaHasUndockButton, false);
-  ads::CDockManager::setConfigFlag(ads::CDockManager::ActiveTabHasCloseButton, false);
-  m_docks = new ads::CDockManager(this);
-  m_docks->setStyleSheet({});  // the application's theme holds
-  std::map<PanelArea, ads::CDockAreaWidget*> areas;
-  for (const PanelSpec& spec : panels) {
-    auto* dock = new ads::CDockWidget(spec.title);
-    dock->setObjectName(spec.id);
-    QWidget* content = spec.make({m_workspace, m_scene}, dock);
-    content->setObjectName(spec.id + QStringLiteral("Panel"));
-    dock->setWidget(content, ads::CDockWidget::ForceNoScrollArea);
-    auto& area = areas[spec.area];
-    if (area != nullptr)
-      m_docks->addDockWidgetTabToArea(dock, area);
-    else
-      area =
-          m_docks->addDockWidget(dockArea(spec.area), dock,
-                                 spec.area == PanelArea::Plots ? areas[PanelArea::Right] : nullptr);
-    m_panels[spec.id] = dock;
-  }
-  for (const auto& [place, area] : areas) area->setCurrentIndex(0);
-  const auto size = [&](PanelArea area, const QList<int>& sizes) {
-    if (areas.contains(area)) m_docks->setSplitterSizes(areas[area], sizes);
-  };
-  size(PanelArea::Centre, {300, 640, 560});
-  size(PanelArea::Plots, {400, 300});
-  size(PanelArea::Bottom, {665, 215});
-  m_firstLayout = m_docks->saveState();
-}
-
-QWidget* MainWindow::showPanel(const QString& id) {
-  const auto found = m_panels.find(id);
-  if (found == m_panels.end()) return nullptr;
-  found->second->toggleView(true);
-  found->second->setAsCurrentTab();
-  return found->second->widget();
+  if (!layout.isEmpty()) m_docks->setLayout(layout);
 }
 
 void MainWindow::setTheme(Theme theme) {
@@ -149,21 +98,8 @@ void MainWindow::refreshBringBack() {
 
 void MainWindow::showError(const QString& title, const QString& error) {
   statusBar()->showMessage(title + QStringLiteral(": ") + error, kMessageMs);
-  // Not modal: work goes on, and several errors do not queue up behind each other.
-  if (m_errorBox == nullptr) {
-    m_errorBox = new QMessageBox(QMessageBox::Warning, tr("Marey"), {}, QMessageBox::Ok, this);
-    m_errorBox->setObjectName(QStringLiteral("errorBox"));
-    m_errorBox->setModal(false);
-    m_errorBox->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  }
-  // What is still being read is not taken away.
-  const bool first = !m_errorBox->isVisible();
-  m_errorBox->setText(first ? tr("%1 did not work.").arg(title)
-                            : tr("Several things did not work."));
-  m_errorBox->setInformativeText(first ? error
-                                       : m_errorBox->informativeText() + QStringLiteral("\n\n") +
-                                             title + QStringLiteral(": ") + error);
-  m_errorBox->show();
+  if (m_errors == nullptr) m_errors = new ErrorBox(this);
+  m_errors->tell(title, error);
 }
 
 bool MainWindow::event(QEvent* event) {
@@ -182,15 +118,15 @@ bool MainWindow::event(QEvent* event) {
 
 void MainWindow::closeEvent(QCloseEvent* event) {
   finishTyping();
-  if (!mayDiscard()) {
+  if (!m_files->mayDiscard()) {
     event->ignore();
     return;
   }
   QSettings settings;
   settings.setValue(QStringLiteral("geometry"), saveGeometry());
-  settings.setValue(QStringLiteral("layout"), m_docks->saveState());
+  settings.setValue(QStringLiteral("layout"), m_docks->layout());
   m_workspace.jobs().cancelAll();
-  m_autosave->remove();
+  m_files->forgetCopy();
   event->accept();
 }
 
@@ -202,7 +138,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
   QStringList files;
   for (const QUrl& url : event->mimeData()->urls())
     if (url.isLocalFile()) files += url.toLocalFile();
-  openFiles(files);
+  m_files->openFiles(files);
   event->acceptProposedAction();
 }
 

@@ -98,7 +98,7 @@ TEST_F(Documents, RecoveringOneCopyKeepsTheOthers) {
   leaveCopy("a.json", 11);
   leaveCopy("b.json", 12);
   answer("recoveryBox", QMessageBox::Open);
-  m_window->start({});
+  m_window->files().start({});
   EXPECT_EQ(m_workspace->document().experiment().seed, 11U);
   EXPECT_TRUE(m_workspace->modified());
   EXPECT_FALSE(autosaves().exists("a.json"));
@@ -120,14 +120,14 @@ TEST_F(Documents, UndoDoesNotGoBehindWhatWasRecovered) {
       autosaves().filePath("crashed.json").toStdString(),
       {{"file", saved.string()}, {"folder", before.folder.string()}, {"experiment", toJson(kept)}});
   answer("recoveryBox", QMessageBox::Open);
-  m_window->start({});
+  m_window->files().start({});
   ASSERT_EQ(m_workspace->document().experiment(), kept);
   EXPECT_TRUE(m_workspace->modified()) << "the file does not hold it";
-  EXPECT_FALSE(m_window->command("undo")->isEnabled());
-  m_window->command("undo")->trigger();
+  EXPECT_FALSE(m_window->menus().command("undo")->isEnabled());
+  m_window->menus().command("undo")->trigger();
   m_workspace->document().undo();
   EXPECT_EQ(m_workspace->document().experiment(), kept);
-  m_window->command("save")->trigger();
+  m_window->menus().command("save")->trigger();
   EXPECT_EQ(readExperiment(saved), kept);
   EXPECT_FALSE(m_workspace->modified());
 }
@@ -142,19 +142,19 @@ TEST_F(Documents, AnEmptyDocumentAsksBeforeItReplacesAFileThatIsNot) {
     e.paths.clear();
   });
   answer("replaceBox", QMessageBox::Cancel);
-  m_window->command("save")->trigger();
+  m_window->menus().command("save")->trigger();
   EXPECT_EQ(readExperiment(saved), before) << "the user's file is empty";
   EXPECT_TRUE(m_workspace->modified());
   m_answers.clear();
   answer("replaceBox", QMessageBox::Save);
-  m_window->command("save")->trigger();
+  m_window->menus().command("save")->trigger();
   EXPECT_TRUE(readExperiment(saved).systems.empty());
 }
 
 TEST_F(Documents, ACopyThatCannotBeReadIsSetAsideAndNamed) {
   autosaves().mkpath(".");
   std::ofstream(autosaves().filePath("cut.json").toStdString()) << "{\"file\": ";
-  m_window->start({});
+  m_window->files().start({});
   EXPECT_TRUE(autosaves().exists("cut.json.broken"));
   EXPECT_FALSE(autosaves().exists("cut.json"));
   auto* box = m_window->findChild<QMessageBox*>("errorBox");
@@ -170,11 +170,11 @@ TEST_F(Documents, SavingRemovesTheCopy) {
 }
 
 TEST_F(Documents, ANewExperimentIsEmptyAndCanBeSavedAndOpened) {
-  EXPECT_TRUE(m_window->command("report")->isEnabled());
-  m_window->command("new")->trigger();
+  EXPECT_TRUE(m_window->menus().command("report")->isEnabled());
+  m_window->menus().command("new")->trigger();
   EXPECT_TRUE(m_workspace->document().experiment().natural.empty());
   EXPECT_TRUE(m_workspace->motions().groups().empty());
-  EXPECT_FALSE(m_window->command("report")->isEnabled()) << "there is nothing to report";
+  EXPECT_FALSE(m_window->menus().command("report")->isEnabled()) << "there is nothing to report";
   m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 2; });
   EXPECT_TRUE(m_errors.empty()) << m_errors.front();
   m_workspace->save(QString::fromStdString(file("new.json")));
@@ -185,7 +185,7 @@ TEST_F(Documents, FilesOfTheCommandLineGoIntoADocumentOfTheirOwn) {
   const std::string model =
       m_workspace->document().modelFile(m_workspace->document().experiment().systems.front());
   m_workspace->open({}, {});
-  m_window->start({QString::fromStdString(model)});
+  m_window->files().start({QString::fromStdString(model)});
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
   EXPECT_TRUE(m_workspace->document().experiment().natural.empty())
       << "the demo's walkers are there too";
@@ -195,7 +195,7 @@ TEST_F(Documents, FilesOfTheCommandLineGoIntoADocumentOfTheirOwn) {
 
 TEST_F(Documents, AFileThatIsNoModelIsRefusedAndTheDocumentStays) {
   std::ofstream(file("no.marey")) << "not a model";
-  m_window->openFiles({QString::fromStdString(file("no.marey"))});
+  m_window->files().openFiles({QString::fromStdString(file("no.marey"))});
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
   ASSERT_EQ(m_errors.size(), 1U);
   EXPECT_NE(m_errors.front().find("no.marey"), std::string::npos);
@@ -212,7 +212,7 @@ TEST_F(Documents, ANaturalFileThatVanishedIsNamedAndReadOnceItIsBack) {
   EXPECT_EQ(m_workspace->motions().groups().front().motions.size(), 6U)
       << "the good clips are gone too";
   writeSmallBvh(vanished);
-  m_window->command("reloadNatural")->trigger();
+  m_window->menus().command("reloadNatural")->trigger();
   ASSERT_TRUE(waitUntil([this] { return m_jobs->idle(); }));
   EXPECT_EQ(m_workspace->motions().groups().front().motions.size(), 7U);
   // Its body is no model's: that is told once, and nothing else breaks.
@@ -229,7 +229,7 @@ TEST_F(Documents, ANaturalFileThatVanishedIsNamedAndReadOnceItIsBack) {
 TEST_F(Documents, SettingsAreOneEdit) {
   addPanelCommands(*m_window, *m_workspace);
   const size_t before = m_workspace->document().history().size();
-  m_window->command("documentSettings")->trigger();
+  m_window->menus().command("documentSettings")->trigger();
   auto* dialog = child<QDialog>(*m_window, "documentSettings");
   child<QLineEdit>(*dialog, "settingsTitle")->setText("Walks");
   child<QPlainTextEdit>(*dialog, "settingsNotes")->setPlainText("two\nlines");
@@ -264,7 +264,7 @@ TEST_F(Documents, SavingUnderAShortNameAsksBeforeItReplacesAFile) {
     QTimer::singleShot(0, dialog, [dialog] { QMetaObject::invokeMethod(dialog, "accept"); });
   });
   hand.start(50);
-  m_window->command("saveAs")->trigger();
+  m_window->menus().command("saveAs")->trigger();
   EXPECT_TRUE(asked);
   std::ifstream in(file("there.json"));
   std::string content;

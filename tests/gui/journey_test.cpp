@@ -46,7 +46,7 @@ TEST_F(Journey, SamplesEditsCancelsUndoesSavesAndReopens) {
   EXPECT_GE(m_workspace->motions().groups().back().motions.size(), 10U)
       << "what was drawn was thrown away";
 
-  m_window->command("undo")->trigger();
+  m_window->menus().command("undo")->trigger();
   EXPECT_EQ(m_workspace->document().experiment().samples, 2);
   const QString file = m_folder.path() + "/journey.json";
   m_workspace->save(file);

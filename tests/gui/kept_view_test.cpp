@@ -267,7 +267,7 @@ TEST_F(KeptView, AModelIsAddedWithItsTemperatureAndItsCardCanBeRead) {
   model.metadata["card"] = "# Walker\n\nFor tests of *walking*.";
   model.metadata["recommended"] = {{"temperature", 0.65}};
   writeTensorFile(file("carded.marey"), model);
-  m_window->openFiles({QString::fromStdString(file("carded.marey").string())});
+  m_window->files().openFiles({QString::fromStdString(file("carded.marey").string())});
   ASSERT_TRUE(idle());
   ASSERT_EQ(m_workspace->document().experiment().systems.size(), 2U);
   EXPECT_EQ(m_workspace->document().experiment().systems[1].temperature, 0.65);

@@ -162,19 +162,19 @@ TEST_F(MouseJourney, DrawsAPathSamplesPicksBrushesUndoesSavesAndReopens) {
   expectLikeBaseline(pictureOf(*m_window), "journey-sampled", 0.9);
 
   // Undone, done again, saved under a new name, changed, and opened again.
-  m_window->command("undo")->trigger();
+  m_window->menus().command("undo")->trigger();
   EXPECT_EQ(path().wayPoints.back(), before);
-  m_window->command("redo")->trigger();
+  m_window->menus().command("redo")->trigger();
   EXPECT_EQ(path().wayPoints.back(), after);
   const QString file = m_folder.path() + "/sitting.json";
   typeIntoFileDialog(file);
-  m_window->command("saveAs")->trigger();
+  m_window->menus().command("saveAs")->trigger();
   ASSERT_TRUE(QFile::exists(file));
   EXPECT_FALSE(m_workspace->modified());
   const Experiment saved = m_workspace->document().experiment();
   m_workspace->open(Experiment{}, {});
   typeIntoFileDialog(file);
-  m_window->command("open")->trigger();
+  m_window->menus().command("open")->trigger();
   ASSERT_TRUE(idle());
   EXPECT_EQ(m_workspace->document().experiment(), saved);
   EXPECT_EQ(m_workspace->document().file(), file);

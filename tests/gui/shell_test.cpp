@@ -25,18 +25,18 @@ class Shell : public DemoTest {};
 TEST_F(Shell, UndoAndRedoFollowTheHistoryAndNameTheEdit) {
   m_workspace->document().edit("Seed", [](Experiment& e) { e.seed = 7; });
   m_workspace->document().edit("Samples", [](Experiment& e) { e.samples = 9; });
-  EXPECT_EQ(m_window->command("undo")->text(), "Undo Samples");
-  m_window->command("undo")->trigger();
+  EXPECT_EQ(m_window->menus().command("undo")->text(), "Undo Samples");
+  m_window->menus().command("undo")->trigger();
   EXPECT_EQ(m_workspace->document().experiment().samples, 2);
   EXPECT_EQ(m_workspace->document().experiment().seed, 7U);
-  EXPECT_EQ(m_window->command("redo")->text(), "Redo Samples");
-  m_window->command("redo")->trigger();
+  EXPECT_EQ(m_window->menus().command("redo")->text(), "Redo Samples");
+  m_window->menus().command("redo")->trigger();
   EXPECT_EQ(m_workspace->document().experiment().samples, 9);
   auto* list = child<QListWidget>(*m_window->showPanel("history"), "historyList");
   ASSERT_EQ(list->count(), 3);
   list->setCurrentRow(0);
   EXPECT_EQ(m_workspace->document().experiment().seed, 1U);
-  EXPECT_FALSE(m_window->command("undo")->isEnabled());
+  EXPECT_FALSE(m_window->menus().command("undo")->isEnabled());
 }
 
 TEST_F(Shell, ADragIsOneEdit) {
@@ -71,7 +71,7 @@ TEST_F(Shell, AFolderThatCannotBeWrittenLosesNothing) {
 
 TEST_F(Shell, AFileThatIsNoExperimentLeavesTheDocument) {
   std::ofstream(file("broken.json")) << "{ \"natural\": 3 }";
-  m_window->openFiles({QString::fromStdString(file("broken.json"))});
+  m_window->files().openFiles({QString::fromStdString(file("broken.json"))});
   ASSERT_EQ(m_errors.size(), 0U);
   auto* box = m_window->findChild<QMessageBox*>("errorBox");
   ASSERT_NE(box, nullptr);
@@ -108,7 +108,7 @@ TEST_F(Shell, ThePaletteFindsACommandByItsLettersAndRunsIt) {
   EXPECT_GT(matchScore("Write the report", "wrep"), matchScore("Wear the tarp", "wrep"));
   EXPECT_LT(matchScore("Save", "xyz"), 0);
   const Theme before = m_window->theme();
-  m_window->command("palette")->trigger();
+  m_window->menus().command("palette")->trigger();
   auto* palette = child<CommandPalette>(*m_window, "commandPalette");
   QTest::keyClicks(child<QLineEdit>(*palette, "commandQuery"), "light or dark");
   QTest::keyClick(child<QLineEdit>(*palette, "commandQuery"), Qt::Key_Return);
@@ -118,7 +118,7 @@ TEST_F(Shell, ThePaletteFindsACommandByItsLettersAndRunsIt) {
 
 TEST_F(Shell, EveryKeyIsGivenOnce) {
   std::map<QString, QString> owners;
-  for (const QAction* action : m_window->commands()) {
+  for (const QAction* action : m_window->menus().commands()) {
     const QString keys = action->shortcut().toString();
     if (keys.isEmpty()) continue;
     EXPECT_TRUE(owners.emplace(keys, action->objectName()).second)
@@ -132,7 +132,7 @@ TEST_F(Shell, TheLayoutIsKeptAndCanBeReset) {
   m_window->close();
   openWindow();
   EXPECT_TRUE(m_window->showPanel("history")->isVisible());
-  m_window->command("resetLayout")->trigger();
+  m_window->menus().command("resetLayout")->trigger();
   settle();
   EXPECT_TRUE(m_window->showPanel("library")->isVisible());
 }
@@ -207,7 +207,7 @@ TEST_F(Shell, ThePaletteAndTheKeySheetKnowTheKeysOfPanels) {
       EXPECT_TRUE(known.contains(action->text())) << action->text().toStdString();
     }
   }
-  EXPECT_EQ(m_window->allCommands().size(), m_window->commands().size() + ofPanels);
+  EXPECT_EQ(m_window->allCommands().size(), m_window->menus().commands().size() + ofPanels);
 }
 
 }  // namespace

@@ -92,11 +92,11 @@ TEST_F(Typing, LeavingTheFieldTakesTheNumber) {
 
 TEST_F(Typing, ACommandTakesWhatIsBeingTyped) {
   type(temperature(), "0.45");
-  m_window->command("selectNone")->trigger();
+  m_window->menus().command("selectNone")->trigger();
   EXPECT_EQ(stored(), 0.45);
   auto* seed = child<QLineEdit>(*m_window, "sampleSeed");
   type(seed, "77");
-  m_window->command("selectNone")->trigger();
+  m_window->menus().command("selectNone")->trigger();
   EXPECT_EQ(m_workspace->document().experiment().seed, 77U);
 }
 
@@ -126,8 +126,8 @@ TEST_F(Typing, StepsOfArrowsStoreWhatIsShown) {
 
 TEST_F(Typing, EveryBoxOfTheWindowTakesFinishedAndRoundNumbers) {
   addPanelCommands(*m_window, *m_workspace);
-  m_window->command("exportMotions")->trigger();
-  m_window->command("documentSettings")->trigger();
+  m_window->menus().command("exportMotions")->trigger();
+  m_window->menus().command("documentSettings")->trigger();
   std::set<QAbstractSpinBox*> boxes;
   const auto collect = [&boxes](QWidget* from) {
     for (QAbstractSpinBox* box : from->findChildren<QAbstractSpinBox*>()) boxes.insert(box);

@@ -1,13 +1,12 @@
-// Commands that read and write files.
+#include "gui/shell/document_commands.h"
+
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QMessageBox>
 #include <QPushButton>
-#include <QStatusBar>
 
 #include "families.h"
 #include "gui/common/file_dialogs.h"
-#include "gui/shell/main_window.h"
 
 #include "base/error.h"
 #include "experiment/edits.h"
@@ -19,64 +18,62 @@
 #include "report/report.h"
 
 namespace marey::gui {
+namespace {
 
-void MainWindow::start(const QStringList& files) {
+constexpr int kMessageMs = 4000, kReportMs = 8000;
+
+}  // namespace
+
+DocumentCommands::DocumentCommands(Workspace& workspace, QWidget& window)
+    : QObject(&window),
+      m_workspace(workspace),
+      m_window(window),
+      m_autosave(std::make_unique<Autosave>(workspace)) {}
+
+void DocumentCommands::setImporter(std::function<void(const QStringList&)> importer) {
+  m_importer = std::move(importer);
+}
+
+void DocumentCommands::start(const QStringList& files) {
   offerRecovery();
   if (files.isEmpty() && !m_workspace.modified()) openDemo();
   if (!files.isEmpty()) openFiles(files);
 }
 
-void MainWindow::openNew() {
+void DocumentCommands::openNew() {
   if (mayDiscard()) m_workspace.open({}, {});
 }
 
-void MainWindow::openDemo() {
+void DocumentCommands::openDemo() {
   if (!mayDiscard()) return;
   try {
     m_workspace.open(demoDocument(), {});
   } catch (const Error& error) {
-    showError(tr("Opening the demo"), QString::fromStdString(error.what()));
+    m_workspace.report(tr("Opening the demo"), QString::fromStdString(error.what()));
   }
 }
 
-void MainWindow::open(const QString& given) {
+void DocumentCommands::open(const QString& given) {
   if (!mayDiscard()) return;
   const QString file =
       !given.isEmpty() ? given
-                       : QFileDialog::getOpenFileName(this, tr("Open an experiment"), {},
+                       : QFileDialog::getOpenFileName(&m_window, tr("Open an experiment"), {},
                                                       tr("Experiments (*.json);;All files (*)"));
   if (file.isEmpty()) return;
   try {
     m_workspace.open(readExperiment(file.toStdString()), file);
     rememberRecent(file);
   } catch (const Error& error) {
-    showError(tr("Opening %1").arg(file), QString::fromStdString(error.what()));
+    m_workspace.report(tr("Opening %1").arg(file), QString::fromStdString(error.what()));
   }
 }
 
-bool MainWindow::save() {
-  if (m_workspace.document().file().isEmpty()) return saveAs();
-  if (!mayReplace(m_workspace.document().file())) return false;
-  try {
-    m_workspace.save(m_workspace.document().file());
-  } catch (const Error& error) {
-    showError(tr("Saving"), QString::fromStdString(error.what()));
-    return false;
-  }
-  rememberRecent(m_workspace.document().file());
-  m_autosave->remove();
-  statusBar()->showMessage(tr("Saved %1").arg(m_workspace.document().file()), 4000);
-  return true;
-}
-
-bool MainWindow::saveAs() {
-  const QString file = askSaveFile(this, tr("Save the experiment"), m_workspace.document().file(),
-                                   tr("Experiments (*.json)"), QStringLiteral("json"));
-  if (file.isEmpty() || !mayReplace(file)) return false;
+bool DocumentCommands::saveTo(const QString& file) {
+  if (!mayReplace(file)) return false;
   try {
     m_workspace.save(file);
   } catch (const Error& error) {
-    showError(tr("Saving"), QString::fromStdString(error.what()));
+    m_workspace.report(tr("Saving"), QString::fromStdString(error.what()));
     return false;
   }
   rememberRecent(file);
@@ -84,7 +81,22 @@ bool MainWindow::saveAs() {
   return true;
 }
 
-bool MainWindow::mayReplace(const QString& file) {
+bool DocumentCommands::save() {
+  const QString file = m_workspace.document().file();
+  if (file.isEmpty()) return saveAs();
+  if (!saveTo(file)) return false;
+  Q_EMIT said(tr("Saved %1").arg(file), kMessageMs);
+  return true;
+}
+
+bool DocumentCommands::saveAs() {
+  const QString file =
+      askSaveFile(&m_window, tr("Save the experiment"), m_workspace.document().file(),
+                  tr("Experiments (*.json)"), QStringLiteral("json"));
+  return !file.isEmpty() && saveTo(file);
+}
+
+bool DocumentCommands::mayReplace(const QString& file) {
   if (!isEmpty(m_workspace.document().experiment()) || QFileInfo(file).size() == 0) return true;
   try {
     if (isEmpty(readExperiment(file.toStdString()))) return true;
@@ -93,25 +105,26 @@ bool MainWindow::mayReplace(const QString& file) {
   }
   QMessageBox box(QMessageBox::Warning, tr("Marey"),
                   tr("The document is empty, but “%1” is not. Replace what it holds?").arg(file),
-                  QMessageBox::Save | QMessageBox::Cancel, this);
+                  QMessageBox::Save | QMessageBox::Cancel, &m_window);
   box.setObjectName(QStringLiteral("replaceBox"));
   box.button(QMessageBox::Save)->setText(tr("Replace it"));
   box.setDefaultButton(QMessageBox::Cancel);
   return box.exec() == QMessageBox::Save;
 }
 
-bool MainWindow::mayDiscard() {
+bool DocumentCommands::mayDiscard() {
   if (!m_workspace.modified()) return true;
   const auto answer = QMessageBox::question(
-      this, tr("Marey"), tr("The document has changes that are not saved."),
+      &m_window, tr("Marey"), tr("The document has changes that are not saved."),
       QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
   if (answer == QMessageBox::Save) return save();
   return answer == QMessageBox::Discard;
 }
 
-void MainWindow::offerRecovery() {
+void DocumentCommands::offerRecovery() {
   const Recovery found = Autosave::recover();
-  for (const QString& fault : found.broken) showError(tr("Recovering unsaved work"), fault);
+  for (const QString& fault : found.broken)
+    m_workspace.report(tr("Recovering unsaved work"), fault);
   size_t asked = 0;
   for (const Recovered& one : found.kept) {
     ++asked;
@@ -120,7 +133,7 @@ void MainWindow::offerRecovery() {
     QMessageBox box(QMessageBox::Question, tr("Unsaved work"),
                     tr("Marey ended without saving “%1” (last change %2). Open what was kept?")
                         .arg(name, one.when),
-                    QMessageBox::Open | QMessageBox::Discard | QMessageBox::Cancel, this);
+                    QMessageBox::Open | QMessageBox::Discard | QMessageBox::Cancel, &m_window);
     box.setObjectName(QStringLiteral("recoveryBox"));
     box.button(QMessageBox::Cancel)->setText(tr("Ask again next time"));
     const int answer = box.exec();
@@ -130,37 +143,39 @@ void MainWindow::offerRecovery() {
     break;
   }
   if (asked < found.kept.size())
-    statusBar()->showMessage(tr("More unsaved work is kept (%1): Marey asks about it at its next "
-                                "start.")
-                                 .arg(found.kept.size() - asked));
+    Q_EMIT said(tr("More unsaved work is kept (%1): Marey asks about it at its next "
+                   "start.")
+                    .arg(found.kept.size() - asked),
+                0);
 }
 
-void MainWindow::openRecovered(const Recovered& recovered) {
+void DocumentCommands::openRecovered(const Recovered& recovered) {
   // It is where the history begins: undo must not go on to what nobody ever made.
   m_workspace.openUnsaved(recovered.experiment, recovered.file);
   // Until there is another copy, this is the only one.
   if (m_autosave->write()) Autosave::discard(recovered);
 }
 
-void MainWindow::addMotionFiles() {
-  openFiles(QFileDialog::getOpenFileNames(this, tr("Add natural motion"), {},
+void DocumentCommands::addMotionFiles() {
+  openFiles(QFileDialog::getOpenFileNames(&m_window, tr("Add natural motion"), {},
                                           tr("Motion (*.bvh *.amc *.npz *.txt);;All files (*)")));
 }
 
-void MainWindow::addModels() {
+void DocumentCommands::addModels() {
   openFiles(
-      QFileDialog::getOpenFileNames(this, tr("Add models"), {}, tr("Marey models (*.marey)")));
+      QFileDialog::getOpenFileNames(&m_window, tr("Add models"), {}, tr("Marey models (*.marey)")));
 }
 
-void MainWindow::openFiles(const QStringList& files) {
+void DocumentCommands::openFiles(const QStringList& files) {
   std::vector<std::string> given;
   // Whole, since the document may be saved elsewhere.
   for (const QString& file : files)
     given.push_back(QFileInfo(file).absoluteFilePath().toStdString());
   const auto [documents, paths, models, motions] = sortOpened(given);
   if (documents.size() > 1)
-    showError(tr("Opening files"), tr("Only one document can be open at a time; %1 is opened.")
-                                       .arg(QString::fromStdString(documents.front())));
+    m_workspace.report(tr("Opening files"),
+                       tr("Only one document can be open at a time; %1 is opened.")
+                           .arg(QString::fromStdString(documents.front())));
   if (!documents.empty()) {
     const QString document = QString::fromStdString(documents.front());
     open(document);
@@ -175,24 +190,27 @@ void MainWindow::openFiles(const QStringList& files) {
                   .seconds = 0.0});
     });
   if (!models.empty()) addModelFiles(models);
-  if (!motions.empty() && m_importer) {
-    QStringList names;
-    for (const std::string& file : motions) names += QString::fromStdString(file);
-    m_importer(names);
-  } else if (!motions.empty()) {
-    m_workspace.document().edit(tr("Add natural motion"), [&](Experiment& e) {
-      for (const std::string& file : motions) {
-        std::error_code none;
-        if (!std::filesystem::is_directory(file, none) && !io::isMotionFile(file))
-          throw InputError({.path = file}, "an experiment, a model or a motion file",
-                           "something else");
-      }
-      addNatural(e, motions);
-    });
-  }
+  if (!motions.empty()) addMotions(motions);
 }
 
-void MainWindow::addModelFiles(const std::vector<std::string>& files) {
+void DocumentCommands::addMotions(const std::vector<std::string>& files) {
+  if (m_importer) {
+    QStringList names;
+    for (const std::string& file : files) names += QString::fromStdString(file);
+    return m_importer(names);
+  }
+  m_workspace.document().edit(tr("Add natural motion"), [&](Experiment& e) {
+    for (const std::string& file : files) {
+      std::error_code none;
+      if (!std::filesystem::is_directory(file, none) && !io::isMotionFile(file))
+        throw InputError({.path = file}, "an experiment, a model or a motion file",
+                         "something else");
+    }
+    addNatural(e, files);
+  });
+}
+
+void DocumentCommands::addModelFiles(const std::vector<std::string>& files) {
   auto temperatures = std::make_shared<std::vector<double>>();
   m_workspace.jobs().start(
       Lane::Files, tr("Adding models"),
@@ -215,9 +233,9 @@ void MainWindow::addModelFiles(const std::vector<std::string>& files) {
       this);
 }
 
-void MainWindow::writeReport() {
+void DocumentCommands::writeReport() {
   const QString folder =
-      QFileDialog::getSaveFileName(this, tr("Folder of the report"), QStringLiteral("report"));
+      QFileDialog::getSaveFileName(&m_window, tr("Folder of the report"), QStringLiteral("report"));
   if (folder.isEmpty()) return;
   const Experiment document = m_workspace.document().experiment();
   const std::string out = folder.toStdString();
@@ -234,10 +252,9 @@ void MainWindow::writeReport() {
       },
       [this, folder, missing] {
         const QString written = tr("Report written to %1").arg(folder);
-        statusBar()->showMessage(missing->empty()
-                                     ? written
+        Q_EMIT said(missing->empty() ? written
                                      : tr("%1; %2").arg(written, QString::fromStdString(*missing)),
-                                 8000);
+                    kReportMs);
       },
       this);
 }

@@ -72,8 +72,8 @@ void PathList::build() {
                   tr("as the path has it"), this);
   connect(m_type, &TypeBox::typeChosen, this, [this](const std::string& type) {
     if (!m_path.path()) return;
-    const auto index = static_cast<size_t>(m_workspace.currentPath());
-    m_workspace.edit(tr("Type of path"),
+    const auto index = static_cast<size_t>(m_workspace.document().currentPath());
+    m_workspace.document().edit(tr("Type of path"),
                      [&](Experiment& e) { e.paths.at(index).control.type = type; });
   });
   m_makeDrawn = new QPushButton(tr("Make editable"), this);

@@ -50,9 +50,9 @@ TEST_F(Typing, ATypeOfMotionIsTypedForAPathAndForAStretchOfIt) {
   auto* whole = child<QComboBox>(*panel, "pathType");
   type(whole->lineEdit(), "walk");
   QTest::keyClick(whole->lineEdit(), Qt::Key_Return);
-  const auto path = [this] { return m_workspace->experiment().paths.at(0); };
+  const auto path = [this] { return m_workspace->document().experiment().paths.at(0); };
   EXPECT_EQ(path().control.type, "walk");
-  m_workspace->undo();
+  m_workspace->document().undo();
   EXPECT_EQ(path().control.type, "");
   EXPECT_EQ(whole->currentText(), "");
   child<QSpinBox>(*panel, "wayPointIndex")->setValue(1);

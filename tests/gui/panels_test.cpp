@@ -8,6 +8,7 @@
 #include <QSpinBox>
 #include <QTableWidget>
 #include <QTreeView>
+#include <algorithm>
 #include <map>
 
 #include "gui/gui_support.h"
@@ -64,9 +65,10 @@ class EveryPanel : public WindowTest {
     Clip still = *m_workspace->motions().groups().front().motions.front().clip;
     still = sliceFrames(still, 0, 40);
     still.transforms.reset();
+    still.fps = 20.0;
     for (int frame = 1; frame < 40; ++frame)
-      for (int joint = 0; joint < still.jointCount(); ++joint)
-        still.at(frame, joint) = still.at(0, joint);
+      std::copy_n(still.positions.begin(), still.jointCount(),
+                  still.positions.begin() + std::ptrdiff_t{frame} * still.jointCount());
     const auto clip = std::make_shared<const Clip>(std::move(still));
     MotionGroup frozen{.name = "Frozen", .system = "Frozen", .colourIndex = 1};
     frozen.motions = {{clip, {}, true}, {clip, {}, true}};

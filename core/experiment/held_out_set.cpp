@@ -29,8 +29,9 @@ std::vector<Motion> heldOutSet(const MotionModel& model, const SampleRecipe& rec
   e.heldOutSamples = recipe.samples;
   e.seed = recipe.seed;
   e.fps = recipe.fps;
-  SystemResult result{
-      .name = recipe.system.name, .info = model.info(), .temperature = recipe.system.temperature,
+  SystemResult result{.name = recipe.system.name,
+                      .info = model.info(),
+                      .temperature = recipe.system.temperature,
                       .options = recipe.system.options};
   Ranks alone;
   sampleHeldOut(model, e, natural, result, progress, alone);

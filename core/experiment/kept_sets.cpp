@@ -30,8 +30,9 @@ SampleRecipe inFolder(const SampleRecipe& recipe, const std::filesystem::path& f
 }
 
 std::string keyOf(const KeptSet& set) {
-  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", set.system.name, set.system.temperature, textOf(set.system.options),
-                     set.path.name, set.samples, set.seed, fmt::join(set.leftOut, " "));
+  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", set.system.name, set.system.temperature,
+                     textOf(set.system.options), set.path.name, set.samples, set.seed,
+                     fmt::join(set.leftOut, " "));
 }
 
 }  // namespace marey

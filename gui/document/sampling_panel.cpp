@@ -182,7 +182,7 @@ class SamplingPanel : public QWidget {
 
   /// The model whose options are shown: the chosen one, or the only one.
   int optionRow() const {
-    const auto count = static_cast<int>(m_workspace.experiment().systems.size());
+    const auto count = static_cast<int>(m_workspace.document().experiment().systems.size());
     const int row = m_systems->currentRow();
     return row >= 0 && row < count ? row : count == 1 ? 0 : -1;
   }
@@ -193,7 +193,7 @@ class SamplingPanel : public QWidget {
     std::vector<SamplingOption> schema;
     OptionValues values;
     if (row >= 0) {
-      const ExperimentSystem& system = m_workspace.experiment().systems[static_cast<size_t>(row)];
+      const ExperimentSystem& system = m_workspace.document().experiment().systems[static_cast<size_t>(row)];
       schema = schemaOf(system).value_or(schema);
       std::erase_if(schema, [](const SamplingOption& o) { return o.name == kTemperature; });
       values = system.options;

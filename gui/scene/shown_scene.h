@@ -5,7 +5,7 @@
 
 #include "gui/scene/scene_content.h"
 
-#include "render/scene/live_scene.h"
+#include "render/scene/scene.h"
 
 namespace marey::gui {
 

@@ -58,6 +58,8 @@ class Workspace : public QObject {
   /// Joints of contact by the document's "feet", or found by name; empty where there are none.
   std::vector<int> feet() const;
   stats::ContactRule contactRule() const;
+  /// The types of motion that models which are open know, and the paths of the document name.
+  std::vector<std::string> motionTypes() const;
   /// What a sampling of a system's model takes. Throws FileError or InputError.
   std::vector<SamplingOption> optionSchema(const ExperimentSystem& system) const {
     return m_models->optionSchema(m_document.modelFile(system));

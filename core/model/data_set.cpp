@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/format_version.h"
 #include "base/hash.h"
 #include "model/control_data.h"
 #include "motion/representation/representation.h"
@@ -265,11 +266,8 @@ DataSet readDataSet(const std::filesystem::path& path) {
   const TensorFile file = readTensorFile(path);
   if (file.metadata.value("kind", "") != "dataset")
     throw InputError({.path = origin}, "a data set made by `marey prepare`", "another file");
-  if (const int version = file.metadata.value("version", 1); version > kDataSetVersion)
-    throwInput(
-        {.path = origin, .item = "key 'version'"},
-        fmt::format("at most {} (a data set of this Marey or an older one)", kDataSetVersion), "{}",
-        version);
+  JsonReader metadata(file.metadata, origin);
+  readFormatVersion(metadata, kDataSetVersion);
   const ModelInfo common = loadCommon(file, origin);
   JsonReader config(common.config, origin, "config.");
   DataSet out;
@@ -278,6 +276,7 @@ DataSet readDataSet(const std::filesystem::path& path) {
   out.options.hopS = config.required<double>("hop_s");
   out.options.mirror = config.required<bool>("mirror");
   out.options.reverse = config.required<bool>("reverse");
+  config.finish();
   out.skeleton = common.skeleton;
   if (!out.skeleton) throw InputError({.path = origin}, "a data set with a skeleton", "none");
   out.standardiser = common.standardiser;

@@ -3,6 +3,7 @@
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QGridLayout>
+#include <QHBoxLayout>
 #include <QInputDialog>
 #include <QLabel>
 #include <algorithm>
@@ -74,7 +75,7 @@ void PathList::build() {
     if (!m_path.path()) return;
     const auto index = static_cast<size_t>(m_workspace.document().currentPath());
     m_workspace.document().edit(tr("Type of path"),
-                     [&](Experiment& e) { e.paths.at(index).control.type = type; });
+                                [&](Experiment& e) { e.paths.at(index).control.type = type; });
   });
   m_makeDrawn = new QPushButton(tr("Make editable"), this);
   m_makeDrawn->setObjectName(QStringLiteral("pathMakeEditable"));
@@ -87,9 +88,11 @@ void PathList::build() {
   grid->addWidget(m_more, 0, 4);
   grid->addWidget(seconds, 1, 0);
   grid->addWidget(m_seconds, 1, 1);
-  grid->addWidget(m_makeDrawn, 1, 2, 1, 3, Qt::AlignRight);
-  grid->addWidget(new QLabel(tr("Type"), this), 2, 0);
-  grid->addWidget(m_type, 2, 1, 1, 2);
+  auto* type = new QHBoxLayout;
+  type->addWidget(new QLabel(tr("Type"), this));
+  type->addWidget(m_type, 1);
+  grid->addLayout(type, 1, 2);
+  grid->addWidget(m_makeDrawn, 1, 3, 1, 2, Qt::AlignRight);
   grid->setColumnStretch(2, 1);
 }
 

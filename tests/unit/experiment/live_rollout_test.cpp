@@ -19,6 +19,7 @@ class MemoryModel : public MotionModel, public FrameGenerator, public DensityEst
     m_info.context = 2;
     m_info.lookahead = lookahead;
     m_info.latent.width = 6;
+    m_info.optionSchema = {temperatureOption(m_info.latent.width)};
     m_info.density = DensityKind::Exact;
     m_info.features.fps = kFps;
     auto body = std::make_shared<Skeleton>();

@@ -51,7 +51,7 @@ LiveRollout::LiveRollout(std::shared_ptr<const MotionModel> model, const LiveOpt
   m_window = controlRow().replicate(1, rows);
   m_state = requireRollout(*m_model).start(1, {});
   const auto warmUp = static_cast<int>(std::lround(options.warmUpS * info.features.fps));
-  for (int t = 0; t < warmUp; ++t) step();
+  for (int t = 0; t < warmUp; ++t) step(controlRow());
 }
 
 /// The control of the next frame; beyond it the body goes on as it does.
@@ -72,14 +72,14 @@ Matrix LiveRollout::controlRow() const {
   return out;
 }
 
-/// Draws the next pose under the present velocity.
-void LiveRollout::step() {
+/// Draws the next pose under a row of control.
+void LiveRollout::step(const Matrix& control) {
   const ModelInfo& info = m_model->info();
   const long wide = info.controlDim;
   const long kept = static_cast<long>(info.context) * wide;
   const Matrix past = m_window.middleCols(wide, kept);
   m_window.leftCols(kept) = past;
-  m_window.rightCols(m_window.cols() - kept) = controlRow().replicate(1, 1 + info.lookahead);
+  m_window.rightCols(m_window.cols() - kept) = control.replicate(1, 1 + info.lookahead);
   Matrix latent(1, info.latent.width);
   drawLatent(info, {m_options.seed, m_options.sample, m_options.temperature, &m_options.options},
              m_generated, latent.data());
@@ -118,7 +118,7 @@ std::vector<Vec3> LiveRollout::advance(const LiveCommand& command) {
   m_commands.push_back(command);
   setType(command.type, m_labels, m_frames / fps);
   const Matrix control = controlRow();
-  step();
+  step(control);
   if (m_frames > 0) m_root = trajectoryFromControl(control.replicate(2, 1), m_root).back();
   m_poses.insert(m_poses.end(), m_pose.data(), m_pose.data() + m_pose.size());
   m_controls.insert(m_controls.end(), control.data(), control.data() + control.size());
@@ -132,8 +132,8 @@ FeatureSequence LiveRollout::sequence() const {
   FeatureSequence out{.name = "live", .pose = {}, .control = {}, .start = m_options.start};
   out.pose = Eigen::Map<const Matrix>(m_poses.data(), m_frames, info.poseDim);
   out.control = Eigen::Map<const Matrix>(m_controls.data(), m_frames, info.controlDim);
-  // The first row has no previous frame: by convention it repeats the second.
-  if (m_frames > 1) out.control.row(0) = out.control.row(1);
+  // The first row has no previous frame: by convention its root motion repeats the second's.
+  if (m_frames > 1) out.control.row(0).head(3) = out.control.row(1).head(3);
   return out;
 }
 

@@ -38,7 +38,7 @@ class LiveRollout {
   std::vector<WayPoint> walkedPath() const;
 
  private:
-  void step();
+  void step(const Matrix& control);
   Matrix controlRow() const;
   LiveCommand inBodyFrame(double facingBefore) const;
 

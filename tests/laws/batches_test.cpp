@@ -48,6 +48,33 @@ TEST(Batches, ValuesAreStandardised) {
   EXPECT_TRUE(batch.control.equal(torch::tensor({{{0.f}, {-0.2f}}})));
 }
 
+/// A control that may be left out: its value, and whether it is there, beside one that may not.
+TEST(Batches, ControlThatMayBeLeftOutIsHiddenInAShareOfTheWindows) {
+  FeatureSpec spec{.fps = 20.0};
+  spec.control = {ControlChannel{},
+                  {.name = "beat", .kind = ControlKind::Array, .optional = true, .values = {"0"}}};
+  std::vector<FeatureSequence> clips = manyRamps();
+  for (FeatureSequence& clip : clips) clip.control = Matrix::Ones(10, spec.controlWidth());
+  const Standardiser plain{
+      {0.f, 0.f}, {1.f, 1.f}, std::vector<float>(5, 0.f), std::vector<float>(5, 1.f)};
+  const auto hidden = [&](double share, int64_t step) {
+    Batches batches(clips, plain, 10, 10, torch::kCPU);
+    batches.hideControl(spec, share);
+    const auto control = batches.forStep(3, step, 7).control;
+    EXPECT_TRUE(control.narrow(-1, 0, 3).eq(1.f).all().item<bool>()) << "root motion stays";
+    const auto seen = control.narrow(-1, 3, 2);
+    // All of a window or nothing of it, and value and presence together.
+    EXPECT_TRUE(seen.eq(seen.select(1, 0).select(-1, 0).view({7, 1, 1})).all().item<bool>());
+    return 7 - static_cast<int>(seen.select(1, 0).select(-1, 0).sum().item<float>());
+  };
+  EXPECT_EQ(hidden(0.0, 0), 0);
+  EXPECT_EQ(hidden(1.0, 0), 7);
+  int half = 0;
+  for (int64_t step = 0; step < 60; ++step) half += hidden(0.5, step);
+  EXPECT_NEAR(half / 420.0, 0.5, 0.1) << "four deviations of 420 throws";
+  EXPECT_EQ(hidden(0.5, 7), hidden(0.5, 7)) << "the same again for a resumed run";
+}
+
 TEST(Batches, AnEpochShowsEveryWindowOnceInAnotherOrderEachTime) {
   Batches batches(manyRamps(), kPlain, 10, 10, torch::kCPU);
   std::vector<std::vector<float>> epochs;

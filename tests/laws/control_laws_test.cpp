@@ -140,6 +140,17 @@ TEST_P(ControlLaws, SteeringIsTheSameControl) {
 INSTANTIATE_TEST_SUITE_P(Every, ControlLaws, testing::ValuesIn(allSystems()),
                          [](const auto& info) { return systemName(info.param); });
 
+/// What one system may refuse, the example of every family takes.
+TEST(ControlledData, TrainsTheExampleOfEveryFamily) {
+  Progress progress;
+  for (const ModelFamily& family : allFamilies()) {
+    const test::TempFolder folder;
+    TrainRequest request = requestOf(family, folder / "run");
+    if (request.steps) request.steps = 1;
+    EXPECT_NO_THROW(train(controlledData(), request, allFamilies(), progress)) << family.name;
+  }
+}
+
 /// The mean and deviation of what is there, not of the zeros of what is not.
 TEST(ControlledData, IsStandardisedOverWhatIsThere) {
   auto clips = walksWithBeat(4, 4.0, 2);
